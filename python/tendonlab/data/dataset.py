@@ -1,0 +1,191 @@
+"""What `load` returns: experiments as frames in SI units, and everything that dataset.toml says about them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tendonlab.data.names import expected_one_of
+from tendonlab.errors import DatasetError
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from tendonlab.system import System
+
+
+@dataclass(frozen=True)
+class NominalParameter:
+    """A simulator's value, SI; `sd` None: the library's default prior, 0: known exactly and never fitted."""
+
+    value: float
+    sd: float | None = None
+    lower: float = -math.inf
+    upper: float = math.inf
+
+
+@dataclass(frozen=True)
+class Controller:
+    """How the rig closed its loop: "pd", u = kp (reference - y) + kd d/dt (reference - y), or "cascade",
+    u = kd (kp (reference - y) - dy/dt); y is the signal `measured`. |u| <= `limit`; `disturbance` is added after it."""
+
+    kind: str
+    kp: float
+    kd: float
+    measured: str
+    reference: str
+    limit: float = math.inf
+    derivative_on: str = "error"
+    sample_time: float = 0.0
+    disturbance: str | None = None
+
+
+@dataclass(frozen=True)
+class SignalSpec:
+    """A signal as declared: read from `column`, written there in `unit`, kept here in `si_unit`. `noise_sd` and
+    `resolution` are in `si_unit`. `role`: "input", "output", "reference", "disturbance" or "covariate"."""
+
+    name: str
+    column: str
+    unit: str
+    role: str
+    hold: bool
+    noise_sd: float | None = None
+    resolution: float | None = None
+    si_unit: str = "1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Experiment:
+    """One record. `data` is indexed by time "t", s, with one float column a signal, SI; outputs may hold NaN.
+
+    `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
+    known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats."""
+
+    name: str
+    data: pd.DataFrame = field(repr=False)
+    split: str = "train"
+    repeat: str | None = None
+    start: float | None = None
+    conditions: dict[str, float] = field(default_factory=dict)
+    add: dict[str, float] = field(default_factory=dict)
+    initial: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def time(self) -> np.ndarray:
+        """Time of each sample, s, shape (n,)."""
+        return self.data.index.to_numpy(dtype=float)
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last, s."""
+        return float(self.time[-1] - self.time[0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dataset:
+    """A checked dataset. `dataset["sweep-1"]` is one experiment; `warnings` says in words what was assumed."""
+
+    name: str
+    description: str = field(repr=False)
+    kind: str
+    axis: str
+    nominal_effects: tuple[str, ...]
+    parameters: dict[str, NominalParameter] = field(repr=False)
+    controller: Controller | None = field(repr=False)
+    signals: dict[str, SignalSpec] = field(repr=False)
+    experiments: tuple[Experiment, ...] = field(repr=False)
+    path: Path = field(repr=False)
+    warnings: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> Experiment:
+        for experiment in self.experiments:
+            if experiment.name == name:
+                return experiment
+        known = [experiment.name for experiment in self.experiments]
+        raise DatasetError(f"{self.name}: no experiment {name!r}; {expected_one_of(name, known)}")
+
+    def __iter__(self) -> Iterator[Experiment]:
+        return iter(self.experiments)
+
+    def __len__(self) -> int:
+        return len(self.experiments)
+
+    @property
+    def train(self) -> tuple[Experiment, ...]:
+        """The experiments to fit."""
+        return tuple(experiment for experiment in self.experiments if experiment.split == "train")
+
+    @property
+    def test(self) -> tuple[Experiment, ...]:
+        """The experiments held out."""
+        return tuple(experiment for experiment in self.experiments if experiment.split == "test")
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the system's inputs that were recorded."""
+        return self._with_role("input")
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the system's outputs that were measured."""
+        return self._with_role("output")
+
+    def system(self) -> System:
+        """The simulator that the dataset describes, with its nominal parameters."""
+        from tendonlab.system import System  # the system knows datasets; the other way round only here
+
+        return System.from_dataset(self)
+
+    def plot(self, ax: Axes | None = None, *, signal: str | None = None) -> Axes:
+        """Draw `signal` (the first output) of every experiment against time on `ax`."""
+        import matplotlib.pyplot as plt
+
+        name = self.outputs[0] if signal is None else signal
+        if name not in self.signals:
+            raise DatasetError(f"{self.name}: no signal {name!r}; {expected_one_of(name, self.signals)}")
+        ax = plt.gca() if ax is None else ax
+        for experiment in self.experiments:
+            ax.plot(experiment.time, experiment.data[name], ".", ms=2, label=f"{experiment.name} ({experiment.split})")
+        ax.set(xlabel="time (s)", ylabel=f"{name} ({self.signals[name].si_unit})")
+        ax.legend()
+        return ax
+
+    def to_dict(self) -> dict[str, Any]:
+        """What the dataset holds, in plain types and without the samples."""
+        experiments = [
+            {"name": e.name, "split": e.split, "repeat": e.repeat, "num_samples": len(e.data), "duration": e.duration}
+            for e in self.experiments
+        ]
+        return {
+            "name": self.name,
+            "system": self.kind,
+            "axis": self.axis,
+            "nominal_effects": list(self.nominal_effects),
+            "inputs": list(self.inputs),
+            "outputs": list(self.outputs),
+            "experiments": experiments,
+            "warnings": list(self.warnings),
+        }
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{escape(e.name)}</td><td>{e.split}</td><td>{escape(e.repeat or '')}</td>"
+            f"<td>{len(e.data)}</td><td>{e.duration:.3g}</td></tr>"
+            for e in self.experiments
+        )
+        notes = "".join(f"<li>{escape(warning)}</li>" for warning in self.warnings)
+        return (
+            f"<p><b>{escape(self.name)}</b>: {self.kind}, {self.axis}; in: {', '.join(self.inputs)}; "
+            f"out: {', '.join(self.outputs)}</p><table><tr><th>experiment</th><th>split</th><th>repeat</th>"
+            f"<th>samples</th><th>duration (s)</th></tr>{rows}</table><ul>{notes}</ul>"
+        )
+
+    def _with_role(self, role: str) -> tuple[str, ...]:
+        return tuple(name for name, spec in self.signals.items() if spec.role == role)

@@ -1,0 +1,148 @@
+"""Public recordings: which there are, and making a dataset folder of one."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+from urllib.error import URLError
+from urllib.parse import urlparse
+from urllib.request import urlopen
+
+from tendonlab.data.emps import write_emps
+from tendonlab.data.names import expected_one_of
+from tendonlab.errors import DatasetError
+
+SOURCE_VARIABLE = "TENDONLAB_DATA"
+REGISTRY_VARIABLE = "TENDONLAB_REGISTRY"
+
+
+@dataclass(frozen=True)
+class PublicFile:
+    """A file of a recording, its size in bytes and its checksum."""
+
+    name: str
+    size: int
+    sha256: str
+
+
+@dataclass(frozen=True)
+class PublicDataset:
+    """A public recording; `home` is the address of the folder that holds its files."""
+
+    name: str
+    summary: str
+    licence: str
+    citation: str
+    home: str
+    files: tuple[PublicFile, ...]
+    write: Callable[[dict[str, Path], Path], None]
+
+
+_EMPS = PublicDataset(
+    name="emps",
+    summary="electro-mechanical positioning system: ball-screw axis under cascade control, with disturbance pulses",
+    licence="open benchmark; file copies from an Apache-2.0 repository",
+    citation="A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, Workshop on Nonlinear System "
+    "Identification Benchmarks, Eindhoven, 2019",
+    home="https://raw.githubusercontent.com/forgi86/sysid-neural-continuous/"
+    "956aa7ecd73061b0321c6f6098d74c9e4a7ce67a/examples/EMPS/data",
+    files=(
+        PublicFile("DATA_EMPS.mat", 626039, "6cf6814ae14618795da0101aae2bb97ff0c6351b0501b5492751b02b07facf7e"),
+        PublicFile("DATA_EMPS_PULSES.mat", 630990, "0eab75bb1f6b16228ee78791343a88bf9bfd9a51036ac9807d7b5fc11c0e1704"),
+    ),
+    write=write_emps,
+)
+_ALL = {dataset.name: dataset for dataset in (_EMPS,)}
+
+
+def list_datasets() -> dict[str, PublicDataset]:
+    """The public recordings that `prepare` knows, by name."""
+    return dict(_ALL)
+
+
+def prepare(
+    name: str,
+    *,
+    source: str | PathLike[str] | None = None,
+    out: str | PathLike[str] | None = None,
+    registry: str | None = None,
+    progress: bool = True,
+) -> Path:
+    """Make the dataset folder `out` (./<name> unless given) of the public recording `name`; returns that folder.
+
+    Its files are looked for in `source`, in the folder that TENDONLAB_DATA names, in the cache, and then downloaded from
+    their public home, or from `registry` (or TENDONLAB_REGISTRY), an address that holds them as <name>/<file>. Every
+    file is checked against its sha256. Running it again gives the same folder. Raises DatasetError: unknown name, files
+    not found or changed, or an `out` whose dataset.toml somebody edited."""
+    dataset = _ALL.get(name)
+    if dataset is None:
+        raise DatasetError(f"{name!r} is no public dataset; {expected_one_of(name, _ALL)}")
+    files = {
+        file.name: _find(dataset, file, source=source, registry=registry, progress=progress) for file in dataset.files
+    }
+    folder = Path(name) if out is None else Path(out)
+    dataset.write(files, folder)
+    return folder
+
+
+def _find(
+    dataset: PublicDataset,
+    file: PublicFile,
+    *,
+    source: str | PathLike[str] | None,
+    registry: str | None,
+    progress: bool,
+) -> Path:
+    """A verified copy of `file` on this machine."""
+    folders = [Path(folder) for folder in (source, os.environ.get(SOURCE_VARIABLE)) if folder]
+    places = [place / file.name for folder in folders for place in (folder, folder / dataset.name)]
+    for place in places:
+        if place.is_file():
+            return _verified(place, file)
+    return _download(dataset, file, searched=places, registry=registry, progress=progress)
+
+
+def _verified(path: Path, file: PublicFile) -> Path:
+    found = hashlib.sha256(path.read_bytes()).hexdigest()
+    if found != file.sha256:
+        raise DatasetError(f"{path}: sha256 {found}; expected {file.sha256}, the published file")
+    return path
+
+
+def _download(
+    dataset: PublicDataset, file: PublicFile, *, searched: list[Path], registry: str | None, progress: bool
+) -> Path:
+    base = registry or os.environ.get(REGISTRY_VARIABLE)
+    address = f"{base.rstrip('/')}/{dataset.name}/{file.name}" if base else f"{dataset.home}/{file.name}"
+    looked = ", ".join(str(place) for place in searched) or f"no folder (neither source nor {SOURCE_VARIABLE} is given)"
+    try:
+        import pooch
+    except ImportError as error:
+        problem = f"not found in {looked}, and a download needs pooch"
+        raise DatasetError(f"{file.name}: {problem}; pip install pooch, or give source=") from error
+    pooch.get_logger().setLevel("WARNING")
+    downloader = _copy_file if urlparse(address).scheme == "file" else pooch.HTTPDownloader(progressbar=progress)
+    cache = Path(pooch.os_cache("tendonlab")) / dataset.name
+    try:
+        found: str = pooch.retrieve(
+            address, known_hash=f"sha256:{file.sha256}", fname=file.name, path=cache, downloader=downloader
+        )
+    except (OSError, URLError, ValueError) as error:  # requests' own errors are OSErrors
+        problem = f"not found in {looked}, nor in the cache {cache}, and the download of {address} failed: {error}"
+        raise DatasetError(f"{file.name}: {problem}") from error
+    return Path(found)
+
+
+def _copy_file(url: str, output_file: Any, pooch: Any) -> None:
+    """A downloader for file:// addresses, of which pooch has none; same arguments as pooch's own."""
+    with urlopen(url) as response:
+        if hasattr(output_file, "write"):
+            shutil.copyfileobj(response, output_file)
+        else:
+            Path(output_file).write_bytes(response.read())

@@ -1,0 +1,96 @@
+"""`load`: a folder with dataset.toml and its files to a checked Dataset."""
+
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+
+from tendonlab.catalog import SystemInfo
+
+from tendonlab.data.controller import check_controller, read_controller
+from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
+from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
+from tendonlab.data.parameters import missing_values, read_nominal_effects, read_parameters, read_system
+from tendonlab.data.schema import FILE, read_toml
+from tendonlab.data.signals import doubts, read_signals
+from tendonlab.errors import DatasetError
+
+
+def load(path: str | PathLike[str]) -> Dataset:
+    """Read and check the dataset in the folder `path` (or the dataset.toml in it); samples come in SI units.
+
+    Raises DatasetError at the first violation of the format; it names file, key or column, row where there is one, and
+    what was expected. Rows are the lines of a CSV file (the header is row 1), otherwise samples counted from 1."""
+    folder = Path(path)
+    folder = folder.parent if folder.name == FILE else folder
+    top = read_toml(folder)
+    info, axis = read_system(top)
+    nominal_effects = read_nominal_effects(top, info)
+    parameters = read_parameters(top, info, nominal_effects=nominal_effects)
+    controller = read_controller(top)
+    signals = read_signals(top, info, axis=axis, controller=controller)
+    check_controller(top, signals=signals, info=info)
+    column, unit = read_time(top)
+    context = Context(
+        folder=folder,
+        info=info,
+        nominal_effects=nominal_effects,
+        parameters=parameters,
+        signals=signals,
+        time_column=column,
+        time_unit=unit,
+    )
+    experiments = read_experiments(top, context)
+    _require_motion(experiments, signals.values(), info=info, controller=controller)
+    warnings = [
+        *missing_values(parameters, info, nominal_effects=nominal_effects),
+        *doubts(signals.values(), info),
+        *_split_notes(experiments, given=split_is_given(top)),
+    ]
+    return Dataset(
+        name=top.text("name"),
+        description=top.text("description", ""),
+        kind=info.kind,
+        axis=axis,
+        nominal_effects=nominal_effects,
+        parameters=parameters,
+        controller=controller,
+        signals=signals,
+        experiments=experiments,
+        path=folder,
+        warnings=tuple(warnings),
+    )
+
+
+def _require_motion(
+    experiments: tuple[Experiment, ...],
+    signals: Iterable[SignalSpec],
+    *,
+    info: SystemInfo,
+    controller: Controller | None,
+) -> None:
+    """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing."""
+    required = [signal.name for signal in info.inputs if signal.required]
+    if controller is not None:  # the replay computes the motor's command, from a reference that moves or is disturbed
+        required = [name for name in required if name != "motor_torque"]
+        if controller.disturbance is None or _is_constant(experiments, controller.disturbance):
+            required.append(controller.reference)
+    for spec in signals:
+        if spec.name in required and _is_constant(experiments, spec.name):
+            value = experiments[0].data[spec.name].iloc[0]
+            problem = f"column {spec.column!r} is constant ({value:g} {spec.si_unit}) in every experiment"
+            raise DatasetError(
+                f"{FILE}, key signals.{spec.name}: {problem} and identifies nothing; expected it to vary"
+            )
+
+
+def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:
+    return all(bool((frame == frame.iloc[0]).all()) for frame in (experiment.data[name] for experiment in experiments))
+
+
+def _split_notes(experiments: tuple[Experiment, ...], *, given: bool) -> list[str]:
+    held_out = [experiment.name for experiment in experiments if experiment.split == "test"]
+    if not held_out:
+        return ["no experiment is held out: all of them are in the training set"]
+    if given:
+        return []
+    return [f"no split given: held out by the library: {', '.join(held_out)}"]

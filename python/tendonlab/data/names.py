@@ -1,0 +1,19 @@
+"""Wording that every message about an unknown name shares."""
+
+import difflib
+from collections.abc import Iterable
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The known name most like `name`, or None where none is close."""
+    matches = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
+    return matches[0] if matches else None
+
+
+def expected_one_of(name: str, known: Iterable[str]) -> str:
+    """What was expected instead of `name`: the nearest known name, otherwise all of them."""
+    names = list(known)
+    match = nearest(name, names)
+    if match is not None:
+        return f"did you mean {match!r}?"
+    return f"expected one of {', '.join(names)}" if names else "none is available"

@@ -1,0 +1,214 @@
+"""Files to columns: CSV, Parquet, MAT, HDF5 and NPZ give the same thing, named arrays of equal length."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tendonlab.data.names import expected_one_of
+from tendonlab.errors import DatasetError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_MISSING = ["", "nan", "NaN", "NAN"]
+Reader = Callable[[Path, Sequence[str]], dict[str, np.ndarray]]
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The columns of one file, float, each of shape (n,). `first_row` is how the first sample is counted in messages:
+    line 2 of a CSV, below its header, and 1 in files that have no lines."""
+
+    file: str
+    values: dict[str, np.ndarray]
+    first_row: int
+
+    def error(self, column: str, problem: str, *, sample: int | None = None) -> DatasetError:
+        """The error to raise about `column`, at `sample` (from 0) if it is there."""
+        row = "" if sample is None else f", row {sample + self.first_row}"
+        return DatasetError(f"{self.file}{row}, column {column!r}: {problem}")
+
+
+def read_columns(path: Path, columns: Sequence[str]) -> Columns:
+    """The named columns of a file, whose ending says what it is. Raises DatasetError: unreadable, missing column, not
+    numeric, unequal lengths, no samples."""
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise DatasetError(f"{path.name}: unknown kind of file {path.suffix!r}; expected {', '.join(_READERS)}")
+    if not path.is_file():
+        raise DatasetError(f"{path}: no such file")
+    found = Columns(path.name, reader(path, columns), first_row=2 if reader is _read_csv else 1)
+    first = next(iter(found.values))
+    for name, values in found.values.items():
+        if len(values) != len(found.values[first]):
+            raise found.error(name, f"{len(values)} samples; expected {len(found.values[first])} as in {first!r}")
+        if np.isinf(values).any():
+            raise found.error(name, "an infinite value; expected a number", sample=int(np.isinf(values).argmax()))
+    return found
+
+
+def _pick(file: str, available: Mapping[str, Any], columns: Sequence[str]) -> dict[str, np.ndarray]:
+    for column in columns:
+        if column not in available:
+            raise DatasetError(f"{file}, column {column!r}: is missing; {expected_one_of(column, available)}")
+    return {column: _as_vector(file, column, available[column]) for column in columns}
+
+
+def _as_vector(file: str, column: str, value: object) -> np.ndarray:
+    array = np.asarray(value)
+    if array.dtype.kind not in "biuf":
+        raise DatasetError(f"{file}, column {column!r}: of type {array.dtype}; expected real numbers")
+    if array.ndim == 0 or array.size not in (0, max(array.shape)):
+        raise DatasetError(f"{file}, column {column!r}: of shape {array.shape}; expected (n,), (n, 1) or (1, n)")
+    return array.reshape(-1).astype(float)
+
+
+def _read_csv(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
+    import pandas as pd
+
+    try:
+        header = _csv_header(path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # pandas would drop a surplus field of every row
+            # Blank lines stay, so that a row in a message is the line of the file.
+            frame = pd.read_csv(
+                path,
+                encoding="utf-8-sig",
+                header=None,
+                names=list(range(len(header))),
+                skiprows=1,
+                index_col=False,
+                skip_blank_lines=False,
+                skipinitialspace=True,
+                keep_default_na=False,
+                na_values=_MISSING,
+                float_precision="round_trip",
+                low_memory=False,
+            )
+    except UnicodeDecodeError as error:
+        raise DatasetError(f"{path.name}: byte {error.start} is not UTF-8; expected a UTF-8 file") from error
+    except pd.errors.EmptyDataError:
+        frame = pd.DataFrame(columns=range(len(header)), dtype=float)
+    except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
+        raise DatasetError(f"{path.name}: {error}; expected {len(header)} values in a row, as in the header") from error
+    frame = frame.loc[: frame.last_valid_index()] if frame.notna().to_numpy().any() else frame.iloc[:0]
+    for column in columns:
+        if header.count(column) > 1:
+            raise DatasetError(f"{path.name}, row 1, column {column!r}: stands there {header.count(column)} times")
+    frame.columns = pd.Index(header)
+    numeric = {name: _csv_numbers(path.name, name, frame[name]) for name in columns if name in header}
+    return _pick(path.name, {**dict.fromkeys(header), **numeric}, columns)
+
+
+def _csv_header(path: Path) -> list[str]:
+    with path.open(encoding="utf-8-sig", newline="") as lines:
+        header = next(csv.reader(lines, skipinitialspace=True), [])
+    if not header:
+        raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
+    return [name.strip() for name in header]
+
+
+def _csv_numbers(file: str, column: str, values: pd.Series[Any]) -> np.ndarray:
+    """The column as floats; pandas leaves text in it where a value is no number."""
+    import pandas as pd
+
+    if values.dtype.kind in "biuf":
+        return values.to_numpy(dtype=float)
+    numbers = pd.to_numeric(values, errors="coerce")
+    bad = (numbers.isna() & values.notna()).to_numpy()
+    if bad.any():
+        row = int(bad.argmax())
+        raise DatasetError(f"{file}, row {row + 2}, column {column!r}: {str(values.iloc[row])!r}: expected a number")
+    return numbers.to_numpy(dtype=float)
+
+
+def _read_parquet(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
+    import pandas as pd
+
+    _require(path, "pyarrow")
+    frame = pd.read_parquet(path)
+    if frame.index.name is not None:  # a time index that was written with its name is a column like the others
+        frame = frame.reset_index()
+    return _pick(path.name, {str(name): frame[name].to_numpy() for name in frame.columns}, columns)
+
+
+def _read_mat(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    try:
+        variables = loadmat(path, simplify_cells=True)
+    except NotImplementedError:  # version 7.3 is HDF5
+        return _read_hdf5(path, columns)
+    except (MatReadError, ValueError, TypeError) as error:
+        raise DatasetError(f"{path.name}: {error}; expected a MAT file") from error
+    return _pick(path.name, _flatten(variables, ""), columns)
+
+
+def _flatten(variables: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """Variables by name, the fields of a struct as "struct.field"."""
+    flat: dict[str, Any] = {}
+    for name, value in variables.items():
+        if isinstance(value, dict):
+            flat |= _flatten(value, f"{prefix}{name}.")
+        elif not name.startswith("__"):
+            flat[prefix + name] = value
+    return flat
+
+
+def _read_hdf5(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
+    h5py = _require(path, "h5py")
+    try:
+        with h5py.File(path, "r") as file:
+            found: dict[str, Any] = {}
+            file.visititems(lambda name, item: found.__setitem__(name, item) if hasattr(item, "dtype") else None)
+            return _pick(path.name, {name: _Lazy(item) for name, item in found.items()}, columns)
+    except OSError as error:
+        raise DatasetError(f"{path.name}: {error}; expected an HDF5 file") from error
+
+
+@dataclass(frozen=True)
+class _Lazy:
+    """An array that is read from its file only where it was asked for."""
+
+    item: Any
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.asarray(self.item[()], dtype=dtype)
+
+
+def _read_npz(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
+    import zipfile
+
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            return _pick(path.name, archive, columns)
+    except (OSError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile) as error:
+        if isinstance(error, DatasetError):
+            raise
+        raise DatasetError(f"{path.name}: {error}; expected an NPZ archive of plain arrays") from error
+
+
+def _require(path: Path, package: str) -> Any:
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise DatasetError(f"{path.name}: reading {path.suffix} needs {package}; pip install {package}") from error
+
+
+_READERS: dict[str, Reader] = {
+    ".csv": _read_csv,
+    ".parquet": _read_parquet,
+    ".mat": _read_mat,
+    ".h5": _read_hdf5,
+    ".hdf5": _read_hdf5,
+    ".npz": _read_npz,
+}

@@ -1,0 +1,137 @@
+"""The [signals] tables: role, unit and holding of each signal."""
+
+from collections.abc import Iterable
+
+from tendonlab.catalog import Signal, SystemInfo, unit
+
+from tendonlab.data.dataset import Controller, SignalSpec
+from tendonlab.data.names import nearest
+from tendonlab.data.schema import Table
+from tendonlab.data.units import COMMAND_UNITS, base_unit, convert_difference, require_dimension, same_dimension
+from tendonlab.errors import DatasetError
+
+KEYS = ("column", "unit", "hold", "noise_sd", "resolution")
+
+
+def read_signals(top: Table, info: SystemInfo, *, axis: str, controller: Controller | None) -> dict[str, SignalSpec]:
+    """Every declared signal by name. Raises DatasetError: unknown key, unit of the wrong dimension, a required input
+    that is missing, no output."""
+    tables = top.table("signals")
+    command = _command_unit(tables, info, axis=axis)
+    specs = {}
+    for name in tables.values:
+        table = tables.table(name)
+        table.allow(KEYS)
+        role = _role(name, info, controller)
+        expected = _expected_unit(name, info, axis=axis, controller=controller, command=command)
+        specs[name] = _read_signal(table, name, role=role, expected=expected, hold=_holds(name, role, info))
+    _require_inputs(tables, info)
+    if not any(spec.role == "output" for spec in specs.values()):
+        names = ", ".join(output.name for output in info.outputs)
+        raise top.error("signals", f"no output of {info.kind} is measured; expected at least one of {names}")
+    return specs
+
+
+def doubts(signals: Iterable[SignalSpec], info: SystemInfo) -> list[str]:
+    """A warning for every covariate whose name is nearly that of a signal of the system."""
+    known = [signal.name for signal in (*info.inputs, *info.outputs)]
+    covariates = [spec.name for spec in signals if spec.role == "covariate"]
+    matches = {name: nearest(name, known) for name in covariates}
+    return [
+        f"signal {name!r} is unknown to {info.kind} and kept as a covariate; {match!r} has nearly that name"
+        for name, match in matches.items()
+        if match is not None
+    ]
+
+
+def _read_signal(table: Table, name: str, *, role: str, expected: str | None, hold: bool) -> SignalSpec:
+    if role == "output" and "hold" in table.values:
+        raise table.error("hold", f"{name} is an output; hold is expected at inputs only")
+    written = table.text("unit", expected or "1")
+    try:
+        if expected is not None:
+            require_dimension(written, expected)
+        si_unit = base_unit(written) if expected is None else expected
+    except DatasetError as error:
+        raise table.error("unit", str(error)) from error
+    spread = {
+        key: convert_difference(table.number(key, lower=0.0), unit=written, to=si_unit) if key in table.values else None
+        for key in ("noise_sd", "resolution")
+    }
+    return SignalSpec(
+        name=name,
+        column=table.text("column", name),
+        unit=written,
+        role=role,
+        hold=table.flag("hold", hold),
+        noise_sd=spread["noise_sd"],
+        resolution=spread["resolution"],
+        si_unit=si_unit,
+    )
+
+
+def _role(name: str, info: SystemInfo, controller: Controller | None) -> str:
+    if any(signal.name == name for signal in info.inputs):
+        return "input"
+    if any(signal.name == name for signal in info.outputs):
+        return "output"
+    if controller is not None and name in (controller.reference, controller.disturbance):
+        return "reference" if name == controller.reference else "disturbance"
+    return "covariate"
+
+
+def _holds(name: str, role: str, info: SystemInfo) -> bool:
+    """The default: commands, targets and disturbances are held between samples, what is measured is not."""
+    held = {signal.name: signal.hold for signal in info.inputs}
+    return held.get(name, role in ("reference", "disturbance"))
+
+
+def _expected_unit(
+    name: str, info: SystemInfo, *, axis: str, controller: Controller | None, command: str
+) -> str | None:
+    """The unit that the samples are converted to; None: whatever SI has for a covariate's own."""
+    if controller is not None and name == controller.disturbance:
+        return command
+    if controller is not None and name == controller.reference:
+        return unit("displacement", axis)
+    signal = _find(name, info)
+    if signal is None:
+        return None
+    return command if _is_command(signal) else unit(signal.dimension, axis)
+
+
+def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
+    """The unit in which the motor is commanded: a torque, or what `torque_constant` converts, kept as it is written."""
+    effort = unit("effort", axis)
+    command = next((signal for signal in info.inputs if _is_command(signal)), None)
+    if command is None or command.name not in tables.values:
+        return effort
+    table = tables.table(command.name)
+    written = table.text("unit", effort)
+    try:
+        if same_dimension(written, effort):
+            return effort
+        if any(same_dimension(written, allowed) for allowed in COMMAND_UNITS):
+            if any(parameter.name == "torque_constant" for parameter in info.parameters):
+                return written
+            raise DatasetError(f"unit {written!r}: {info.kind} has no torque_constant; expected one like {effort!r}")
+        require_dimension(written, effort)
+    except DatasetError as error:
+        raise table.error("unit", str(error)) from error
+    return effort
+
+
+def _is_command(signal: Signal) -> bool:
+    return signal.dimension == "command" or signal.name == "motor_torque"
+
+
+def _find(name: str, info: SystemInfo) -> Signal | None:
+    return next((signal for signal in (*info.inputs, *info.outputs) if signal.name == name), None)
+
+
+def _require_inputs(tables: Table, info: SystemInfo) -> None:
+    for signal in info.inputs:
+        if signal.required and signal.name not in tables.values:
+            match = nearest(signal.name, tables.values)
+            hint = f"; {match!r} stands there instead" if match is not None else ""
+            raise tables.error(signal.name, f"is missing; expected this input, which {info.kind} requires{hint}")
