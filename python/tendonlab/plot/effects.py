@@ -1,0 +1,48 @@
+"""Which: the candidate effects by probability."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tendonlab.plot.style import COLOURS, INK, MUTED, new_axes, tidy
+from tendonlab.report.numbers import number, probability, span, unit_text
+from tendonlab.report.words import capital, parameter_words, phrase
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from tendonlab.diagnose.result import Diagnosis, EffectFinding
+
+_PER_LINE = 2
+
+
+def ranked_effects(diagnosis: Diagnosis, ax: Axes | None = None, *, count: int = 6) -> Axes:
+    """The `count` most probable effects as bars, those selected in orange, with their parameters and 95 % intervals."""
+    shown = diagnosis.effects[:count]
+    ax = new_axes(width=7.0, height=0.9 + 0.55 * max(1, len(shown))) if ax is None else ax
+    for row, finding in enumerate(shown):
+        chosen = finding.name in diagnosis.selected
+        ax.barh(row - 0.14, finding.probability, height=0.34, color=COLOURS["with_effect" if chosen else "nominal"])
+        ax.annotate(probability(finding.probability), (finding.probability, row - 0.14), xytext=(4, 0),
+                    textcoords="offset points", va="center", color=INK)  # fmt: skip
+        ax.annotate(_parameters(finding), (0.0, row + 0.06), xytext=(2, -2), textcoords="offset points", va="top",
+                    fontsize="small", color=MUTED)  # fmt: skip
+    tidy(ax, grid="x")
+    ax.set(xlim=(0.0, 1.12), xlabel="Probability that it is part of the cause", ylabel="Effect")
+    ax.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "0.25", "0.5", "0.75", "1"])
+    ax.set_yticks(range(len(shown)), [capital(phrase(finding.name)) for finding in shown])
+    ax.set_ylim(max(len(shown), 1) - 0.35, -0.5)
+    ax.tick_params(axis="y", length=0)
+    if not shown:
+        ax.annotate("No candidate was considered", (0.5, 0.5), xycoords="axes fraction", ha="center", color=MUTED)
+    return ax
+
+
+def _parameters(finding: EffectFinding) -> str:
+    texts = []
+    for name, found in list(finding.parameters.items())[:_PER_LINE]:
+        interval = f" ({span(found['ci95'], 2)})" if found.get("ci95") is not None else ""
+        title = parameter_words(name, element=finding.element)
+        texts.append(f"{title} {number(found['value'], 2)}{interval} {unit_text(found.get('unit', ''))}".rstrip())
+    further = len(finding.parameters) - len(texts)
+    return "; ".join(texts) + (f"; {further} more" if further > 0 else "")

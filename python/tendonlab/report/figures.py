@@ -1,0 +1,164 @@
+"""The figures of a report: each is drawn once and then kept as SVG and PNG."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup, escape
+
+from tendonlab.plot import gap_bars, overlay, ranked_effects, where_map
+from tendonlab.plot.runs import telling_window
+from tendonlab.plot.style import FIGURE, INK, MUTED, RULE
+from tendonlab.plot.where import colour_bar, shared_scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from tendonlab.diagnose.result import Diagnosis
+
+LARGEST_SVG = 400_000  # bytes; beyond, the page embeds the PNG
+_MOST = 4  # outputs and where maps drawn; the tables list all
+_PAGE_COLOURS = {INK: "var(--ink)", MUTED: "var(--muted)", RULE: "var(--rule)", "#ffffff": "none"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """One figure as files: `svg` with text as text, `png` at 160 dots per inch, `alt` what it shows."""
+
+    name: str
+    alt: str
+    svg: str
+    png: bytes
+
+    def inline(self) -> Markup:
+        """The figure for the page: the SVG, in the colours of the page, or the PNG where the SVG is large."""
+        small = _for_page(self.svg, prefix=self.name)
+        if len(small.encode()) <= LARGEST_SVG:
+            return Markup(small.replace("<svg ", f'<svg role="img" aria-label="{escape(self.alt)}" ', 1))
+        return Markup('<img class="paper" alt="{}" src="data:image/png;base64,{}">').format(
+            self.alt, base64.b64encode(self.png).decode()
+        )
+
+
+def draw_all(diagnosis: Diagnosis) -> dict[str, Picture]:
+    """Every figure for which the diagnosis holds data, by name: gap, overlay, where, effects."""
+    import matplotlib
+
+    with matplotlib.rc_context(FIGURE):
+        drawn = {"gap": _gap(diagnosis), "overlay": _overlay(diagnosis), "where": _where(diagnosis)}
+        drawn["effects"] = _effects(diagnosis)
+        alts = {
+            "gap": "Held-out error of each output over its noise floor",
+            "overlay": "Measured and predicted signals in a held-out experiment, and the residuals",
+            "where": "Residual over the noise floor in the plane of motion",
+            "effects": "Candidate effects by probability",
+        }
+        return {
+            name: Picture(name=name, alt=alts[name], svg=_save(figure, name), png=_png(figure))
+            for name, figure in drawn.items()
+            if figure is not None
+        }
+
+
+def _gap(diagnosis: Diagnosis) -> Figure | None:
+    if not diagnosis.gap:
+        return None
+    stages = 3 if diagnosis.selected else 2
+    figure, ax = _figure(height=0.95 + 0.28 * stages * len(diagnosis.gap))
+    gap_bars(diagnosis, ax)
+    ax.set_ylabel("")
+    return figure
+
+
+def _overlay(diagnosis: Diagnosis) -> Figure | None:
+    from matplotlib.figure import Figure
+
+    run = diagnosis.overlay
+    if run is None or not run.measured:
+        return None
+    signals = list(run.measured)[:_MOST]
+    figure = Figure(figsize=(6.8, 0.6 + 2.9 * len(signals)), layout="constrained")
+    grid = figure.subplots(2 * len(signals), 1, sharex=True, squeeze=False, height_ratios=[2.1, 1] * len(signals))
+    axes: list[Axes] = list(grid[:, 0])
+    for index, signal in enumerate(signals):
+        pair = axes[2 * index], axes[2 * index + 1]
+        overlay(diagnosis, pair, signal=signal, window=telling_window(run))
+    for ax in axes[:-1]:
+        ax.set_xlabel("")
+    figure.align_ylabels(axes)
+    parts = [ax.get_legend_handles_labels() for ax in axes[:2]]
+    handles, labels = parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
+    figure.legend(handles, labels, ncols=5, loc="outside upper left", handlelength=1.6, columnspacing=1.4)
+    return figure
+
+
+def _where(diagnosis: Diagnosis) -> Figure | None:
+    from matplotlib.figure import Figure
+
+    maps = diagnosis.where_map[:_MOST]
+    if not maps:
+        return None
+    stages = ("refitted", "with_effect") if diagnosis.selected else ("refitted",)
+    figure = Figure(figsize=(7.0 if len(stages) == 2 else 4.6, 2.9 * len(maps)), layout="constrained")
+    grid = figure.subplots(len(maps), len(stages), squeeze=False, sharey="row")
+    for row, where in zip(grid, maps, strict=True):
+        scale = shared_scale(where)
+        for ax, stage in zip(row, stages, strict=True):
+            where_map(where, ax, stage=stage, scale=scale)
+            ax.set_title(ax.get_title("left") if len(stages) == 1 or ax is row[0] else "With effect", loc="left")
+        if len(stages) == 2:
+            row[1].set_ylabel("")
+        colour_bar(row[0].collections[0], list(row))
+    return figure
+
+
+def _effects(diagnosis: Diagnosis) -> Figure | None:
+    if not diagnosis.effects:
+        return None
+    figure, ax = _figure(height=0.8 + 0.5 * min(6, len(diagnosis.effects)), width=7.4)
+    ranked_effects(diagnosis, ax)
+    ax.set_ylabel("")
+    return figure
+
+
+def _figure(*, height: float, width: float = 6.8) -> tuple[Figure, Axes]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots()
+
+
+def _save(figure: Figure, name: str) -> str:
+    import matplotlib
+
+    stream = io.StringIO()
+    with matplotlib.rc_context({"svg.hashsalt": name}):  # the same diagnosis gives the same bytes
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None}, dpi=160)
+    return stream.getvalue()
+
+
+def _png(figure: Figure) -> bytes:
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=160, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def _for_page(svg: str, *, prefix: str) -> str:
+    """The <svg> element alone: short numbers, colours of the page, ids unique on it, no outside reference."""
+    body = svg[svg.index("<svg") :]
+    body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<!DOCTYPE.*?>", "", body, flags=re.S)
+    body = re.sub(r' xmlns:xlink="[^"]*"| version="[^"]*"| xmlns="[^"]*"', "", body)
+    body = body.replace("xlink:href", "href")
+    body = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", body)
+    used = set(re.findall(r'(?:url\(#|href="#)([\w-]+)', body))
+    body = re.sub(r' id="([\w.-]+)"', lambda found: f' id="{prefix}-{found[1]}"' if found[1] in used else "", body)
+    body = re.sub(r'(url\(#|href="#)', rf"\g<1>{prefix}-", body)
+    body = re.sub(r"font-family: [^;\"]*|font: ([\d.]+px) [^;\"]*", r"font-size: \1", body)
+    for drawn, shown in _PAGE_COLOURS.items():
+        body = body.replace(drawn, shown)
+    return re.sub(r">\s*\n\s*<", "><", body)

@@ -1,0 +1,82 @@
+"""Numbers as a reader wants them: few digits, a true minus sign, units with raised exponents and SI prefixes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+ABSENT = "–"
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+_TAKES_PREFIX = ("rad", "m", "N", "s", "A", "V")
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """`value` to so many significant digits; a dash where there is none or it is not finite."""
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
+    exponent = int(power)
+    if -4 <= exponent < 5:
+        text = f"{float(f'{value:.{digits - 1}e}'):.{max(0, digits - 1 - exponent)}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text else text
+    else:
+        text = f"{mantissa.rstrip('0').rstrip('.')}×10{str(exponent).translate(_RAISED)}"
+    return "0" if float(value) == 0.0 else text.replace("-", "−")
+
+
+def span(bounds: Sequence[float] | None, digits: int = 3) -> str:
+    """Two bounds as "0.04 to 0.06"; empty where they are absent."""
+    return "" if bounds is None else f"{number(bounds[0], digits)} to {number(bounds[1], digits)}"
+
+
+def interval(value: float | None, bounds: Sequence[float] | None) -> str:
+    """A value and its 95 % interval: "0.05 (0.04 to 0.06)"."""
+    return number(value) if bounds is None else f"{number(value)} ({span(bounds)})"
+
+
+def probability(value: float | None) -> str:
+    """Two decimals, and never a certainty that two decimals cannot state."""
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    if value > 0.99:
+        return "> 0.99"
+    return f"{value:.2f}" if value >= 0.01 or value == 0.0 else "< 0.01"
+
+
+def percent(value: float | None, bounds: Sequence[float] | None = None) -> str:
+    """A share as "91 %", with bounds "91 % (88–94 %)"."""
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    if bounds is None or not all(map(math.isfinite, bounds)):
+        return f"{_hundredths(value)} %"
+    low, high = map(_hundredths, bounds)
+    joint = " to " if min(bounds) < 0 else "–"
+    return f"{_hundredths(value)} % ({low}{joint}{high} %)" if low != high else f"{_hundredths(value)} %"
+
+
+def _hundredths(value: float) -> str:
+    text = f"{100 * value:.1f}" if 0.99 < abs(value) < 0.9995 else f"{100 * value:.0f}"
+    return "0" if text == "-0" else text.replace("-", "−")
+
+
+def unit_text(unit: str) -> str:
+    """A pint unit for the eye: "kg*m^2" as "kg·m²"; empty for a dimensionless one."""
+    if unit in ("", "1", "dimensionless"):
+        return ""
+    text = unit.replace("**", "^").replace("*", "·")
+    head, *powers = text.split("^")
+    for power in powers:
+        length = len(power) - len(power.lstrip("-0123456789"))
+        head += power[:length].translate(_RAISED) + power[length:]
+    return head
+
+
+def prefixed(values: Iterable[float | None], unit: str) -> tuple[float, str]:
+    """(factor, unit) that bring the largest of `values` to 1 or more: (1000.0, "mrad") for 0.03 rad."""
+    sizes = [abs(value) for value in values if value is not None and math.isfinite(value) and value != 0]
+    first = unit.split("*")[0].split("/")[0].split("^")[0]
+    if not sizes or first not in _TAKES_PREFIX or unit.startswith(first + "^"):
+        return 1.0, unit_text(unit)
+    scale, letter = next((pair for pair in _PREFIXES if max(sizes) >= pair[0]), _PREFIXES[-1])
+    return 1.0 / scale, letter + unit_text(unit)

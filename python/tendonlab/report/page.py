@@ -1,0 +1,153 @@
+"""One self-contained HTML page from a diagnosis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from tendonlab.report import numbers, words
+from tendonlab.report.verdict import certainty, sentence, version
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from tendonlab.diagnose.result import Diagnosis
+    from tendonlab.report.figures import Picture
+
+_SHOWN = 12  # candidates in the table of the page; report.json has all
+_LEAST = 0.005  # probability below which a candidate without a selected effect is not worth a row of its own
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    made = Environment(loader=PackageLoader("tendonlab.report"), autoescape=True, undefined=StrictUndefined,
+                       trim_blocks=True, lstrip_blocks=True)  # fmt: skip
+    made.filters |= {
+        "number": numbers.number, "percent": numbers.percent, "probability": numbers.probability,
+        "interval": numbers.interval, "span": numbers.span, "unit": numbers.unit_text, "words": words.words,
+        "phrase": words.phrase, "capital": words.capital, "listing": words.listing, "plainly": _plainly,
+        "element": words.element_words,
+    }  # fmt: skip
+    made.globals |= {"parameter_words": words.parameter_words, "width": _width}
+    return made
+
+
+def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
+    """The text of report.html: everything inline, all text escaped. `pictures` is what `report.figures.draw_all` gives."""
+    return _environment().get_template("report.html.j2").render(
+        why=diagnosis, sentence=sentence(diagnosis), certainty=certainty(diagnosis), version=version(),
+        verdicts=words.VERDICTS, replays=words.REPLAYS, facts=_facts(diagnosis), rows=_gap_rows(diagnosis),
+        regimes=_regimes(diagnosis), findings=_listed(diagnosis), runs=_runs(diagnosis), side=_side(diagnosis),
+        most=_where_in_words(diagnosis), pictures={name: picture.inline() for name, picture in pictures.items()},
+    )  # fmt: skip
+
+
+def effects_table(diagnosis: Diagnosis) -> str:
+    """The ranked effects as an HTML table, for the page and for notebooks."""
+    template = _environment().get_template("effects.html.j2")
+    return template.render(why=diagnosis, findings=_listed(diagnosis))
+
+
+def _listed(diagnosis: Diagnosis) -> list[Any]:
+    likely = [found for found in diagnosis.effects if found.probability >= _LEAST or found.name in diagnosis.selected]
+    return likely[:_SHOWN] or list(diagnosis.effects[:3])
+
+
+def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
+    """(value, what it is, detail) of the figures below the headline; those without a value are left out."""
+    facts = [(numbers.probability(diagnosis.verdict_probability[diagnosis.verdict]),
+              f"probability of “{words.VERDICTS[diagnosis.verdict].lower()}”",
+              "calibrated" if diagnosis.calibrated else "not yet calibrated")]  # fmt: skip
+    for key, title in (("from_nominal", "of the held-out gap removed, from nominal"),
+                       ("from_refitted", "of the held-out gap removed, beyond tuning")):  # fmt: skip
+        found = diagnosis.shrinkage[key]
+        if found is not None and found.get("value") is not None and (key == "from_nominal" or diagnosis.selected):
+            bounds = found.get("ci95")
+            detail = f"95 % interval {numbers.percent(bounds[0])} to {numbers.percent(bounds[1])}" if bounds else ""
+            facts.append((numbers.percent(found["value"]), title, detail))
+    if diagnosis.explained is not None and diagnosis.selected:
+        facts.append((numbers.percent(diagnosis.explained), "of the excess mean square explained", "beyond the noise floor"))
+    return facts
+
+
+def _gap_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    rows = []
+    for signal, values in diagnosis.gap.items():
+        factor, unit = numbers.prefixed([values["refitted"], values["noise_floor"]], diagnosis.units.get(signal, ""))
+        shown = {key: numbers.number(None if value is None else factor * value) for key, value in values.items()}
+        floor = values["noise_floor"]
+        last = values["with_effect" if diagnosis.selected else "refitted"]
+        left = last / floor if floor and last is not None and math.isfinite(last) else None
+        rows.append({"signal": signal, "unit": unit, "left": left, **shown})
+    return rows
+
+
+def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    rows = []
+    for regime in diagnosis.where["regimes"]:
+        unit = numbers.unit_text(words.unit_of(regime["coordinate"], diagnosis.units))
+        text = f"{words.words(regime['coordinate'])} {numbers.span(regime.get('range'))} {unit}".rstrip()
+        rows.append({"text": text, "share": regime.get("share"), "p_value": regime.get("p_value")})
+    return rows
+
+
+def _where_in_words(diagnosis: Diagnosis) -> list[str]:
+    """The largest entry of each list of `where`, as half a sentence each."""
+    parts = []
+    if elements := diagnosis.where["elements"]:
+        first = max(elements, key=lambda entry: entry["probability"])
+        parts.append(f"the {words.element_words(first['element'])} (probability {numbers.probability(first['probability'])})")
+    if signals := diagnosis.where["signals"]:
+        first = max(signals, key=lambda entry: entry["share"])
+        parts.append(f"the {words.words(first['signal'])} ({numbers.percent(first['share'])} of the excess)")
+    if regimes := _regimes(diagnosis):
+        first = max(regimes, key=lambda entry: entry["share"] or 0.0)
+        parts.append(f"{first['text']} ({numbers.percent(first['share'])} of the excess)")
+    return parts
+
+
+def _runs(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """Per held-out experiment: the gap of each stage in noise floors and its shrinkage by the selected effects."""
+    rows = []
+    for name, row in diagnosis.held_out.to_dict(orient="index").items():
+        before, after = row["refitted"], row["with_effect"]
+        known = before is not None and after is not None and before > 0
+        rows.append({"name": str(name), **row, "shrinkage": 1.0 - after / before if known else None})
+    return rows
+
+
+def _side(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    if diagnosis.table is None:
+        return None
+    frame = diagnosis.table.frame
+    frame = frame.reset_index() if frame.index.name is not None else frame
+    cells = [[_cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
+    return {"title": diagnosis.table.title, "note": diagnosis.table.note, "columns": list(frame.columns), "cells": cells}
+
+
+def _cell(value: Any) -> tuple[str, bool]:
+    """Its text, and whether it is a number and so set flush right."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value), False
+    return numbers.number(float(value), 4), True
+
+
+def _plainly(value: Any) -> str:
+    """A setting of `details` or `replay` in words, whatever its type."""
+    if isinstance(value, Mapping):
+        return "; ".join(f"{words.words(str(key))} {_plainly(item)}" for key, item in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(_plainly(item) for item in value)
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: numbers.ABSENT}[value]
+    return numbers.number(float(value), 4) if isinstance(value, int | float) else str(value)
+
+
+def _width(share: float | None) -> str:
+    """A share as the width of a bar in CSS."""
+    known = share is not None and math.isfinite(share)
+    return f"{100 * min(1.0, max(0.0, share or 0.0)) if known else 0:.1f}%"

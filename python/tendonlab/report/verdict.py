@@ -1,0 +1,82 @@
+"""The verdict as one sentence, with numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tendonlab.report.numbers import percent, probability
+from tendonlab.report.words import listing, phrase
+
+if TYPE_CHECKING:
+    from tendonlab.diagnose.result import Diagnosis
+
+_COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five"}
+
+
+def version() -> str:
+    """The version of tendonlab that runs, "0.0.0" where it is used without being installed."""
+    from importlib import metadata
+
+    try:
+        return metadata.version("tendonlab")
+    except metadata.PackageNotFoundError:
+        return "0.0.0"
+
+
+def sentence(diagnosis: Diagnosis) -> str:
+    """What was found, how sure that is and what it does to the held-out gap."""
+    return {"no_gap": _no_gap, "parameters_only": _parameters_only, "effect": _effect, "unknown_effect": _unknown}[
+        diagnosis.verdict
+    ](diagnosis)
+
+
+def certainty(diagnosis: Diagnosis) -> float:
+    """The probability that the sentence quotes: of the selected set under "effect", otherwise of the verdict."""
+    if diagnosis.verdict != "effect" or not diagnosis.selected:
+        return diagnosis.verdict_probability[diagnosis.verdict]
+    chosen = frozenset(diagnosis.selected)
+    for candidate in diagnosis.sets:
+        if frozenset(candidate["effects"]) == chosen:
+            return float(candidate["probability"])
+    marginal = [finding.probability for finding in diagnosis.effects if finding.name in chosen]
+    return min(marginal, default=diagnosis.verdict_probability["effect"])
+
+
+def _aside(diagnosis: Diagnosis) -> str:
+    state = "" if diagnosis.calibrated else ", not yet calibrated"
+    return f"(probability {probability(certainty(diagnosis))}{state})"
+
+
+def _shrinks(diagnosis: Diagnosis, start: str, subject: str) -> str:
+    found = diagnosis.shrinkage[start]
+    if found is None or found.get("value") is None:
+        return ""
+    return f"; {subject} the held-out gap by {percent(found['value'], found.get('ci95'))}"
+
+
+def _no_gap(diagnosis: Diagnosis) -> str:
+    return f"There is no gap to explain: the simulator as it stands predicts to the noise floor {_aside(diagnosis)}."
+
+
+def _parameters_only(diagnosis: Diagnosis) -> str:
+    tail = _shrinks(diagnosis, "from_nominal", "re-identifying them shrinks")
+    return f"Only parameter values were off, and no effect is missing {_aside(diagnosis)}{tail}."
+
+
+def _effect(diagnosis: Diagnosis) -> str:
+    names = diagnosis.selected
+    if not names:
+        return f"An unmodelled effect of the library explains the gap {_aside(diagnosis)}."
+    count = "An unmodelled effect explains" if len(names) == 1 else f"{_COUNTS.get(len(names), len(names))} "
+    count += "" if len(names) == 1 else "unmodelled effects explain"
+    tail = _shrinks(diagnosis, "from_refitted", f"adding {'it' if len(names) == 1 else 'them'} shrinks")
+    return f"{count} the gap: {listing(map(phrase, names))} {_aside(diagnosis)}{tail}."
+
+
+def _unknown(diagnosis: Diagnosis) -> str:
+    if not diagnosis.selected:
+        return f"A gap remains after tuning that no effect of the library explains {_aside(diagnosis)}."
+    verb = "is" if len(diagnosis.selected) == 1 else "are"
+    share = "" if diagnosis.explained is None else f" and explain{'s' * (verb == 'is')} {percent(diagnosis.explained)} of it"
+    found = listing(map(phrase, diagnosis.selected))
+    return f"The library explains only a part of the gap {_aside(diagnosis)}: {found} {verb} established{share}, the rest is unknown."

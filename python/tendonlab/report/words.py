@@ -1,0 +1,112 @@
+"""Names of the library in the words of the field: "joint:stribeck" is "Stribeck friction at the joint"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+EFFECTS = {
+    "coulomb": "Coulomb friction",
+    "viscous": "viscous friction",
+    "stribeck": "Stribeck friction",
+    "viscous_power_law": "viscous friction that is not linear in speed",
+    "presliding": "presliding friction",
+    "asymmetry": "direction-dependent friction",
+    "load_dependence": "load-dependent friction",
+    "position_dependence": "position-dependent friction",
+    "efficiency": "power-proportional loss",
+    "drift": "drifting friction",
+    "compliance": "compliance",
+    "relaxation": "viscoelastic relaxation",
+    "backlash": "backlash",
+    "stiffening": "stiffening",
+    "hysteresis": "hysteresis",
+    "capstan": "capstan friction",
+    "slack": "slack",
+    "eccentricity": "eccentricity",
+    "pretension_loss": "loss of pretension",
+    "offset": "constant offset",
+    "unbalance": "unbalance",
+    "ripple": "torque ripple",
+    "gain_error": "gain error",
+    "saturation": "saturation",
+    "deadband": "deadband",
+    "delay": "delay",
+    "lag": "lag",
+    "bias": "bias",
+    "scale_error": "scale error",
+    "quantisation": "quantisation",
+    "filter_lag": "filter lag",
+}
+PLACES = {
+    "motor": "at the motor",
+    "driver": "at the driver",
+    "contact": "at the pulley contact",
+    "joint": "at the joint",
+    "load": "on the load",
+}
+VERDICTS = {
+    "no_gap": "No gap",
+    "parameters_only": "Parameters only",
+    "effect": "Effect identified",
+    "unknown_effect": "Unknown effect",
+}
+STAGES = {"nominal": "nominal", "refitted": "refitted", "with_effect": "with effect"}
+REPLAYS = {
+    "injection": "logged inputs, with the measured motion fed back to the simulator through the motor port",
+    "controller": "rig and controller simulated together in free run",
+    "free": "free run on the logged inputs",
+    "inverse": "torque predicted from the measured motion",
+}
+_PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "bowden": "Bowden"}
+_RATES = {"velocity": 1, "speed": 1, "acceleration": 2}
+_COORDINATES = {"time": "s", "t": "s", "frequency": "Hz", "temperature": "degC"}
+
+
+def words(name: str) -> str:
+    """A name of the library with its underscores as spaces: "stribeck_velocity" is "Stribeck velocity"."""
+    return " ".join(_PROPER.get(part, part) for part in name.replace(".", " ").replace("_", " ").split())
+
+
+def element_words(element: str) -> str:
+    """The noun of an element: "contact" is "pulley contact", "sensor.joint_angle" is "joint angle sensor"."""
+    if element.startswith("sensor."):
+        return f"{words(element.removeprefix('sensor.'))} sensor"
+    return "pulley contact" if element == "contact" else words(element)
+
+
+def phrase(name: str) -> str:
+    """What `element:effect` is called in a sentence; a name that the table does not have is spelt out."""
+    element, colon, effect = name.rpartition(":")
+    if not colon:
+        return EFFECTS.get(name, words(name))
+    if (element, effect) == ("load", "offset"):
+        return "constant disturbance on the load"
+    return f"{EFFECTS.get(effect, words(effect))} {PLACES.get(element, f'in the {element_words(element)}')}"
+
+
+def parameter_words(name: str, *, element: str = "") -> str:
+    """A parameter's words, without the element where the text around already names it."""
+    own = name.removeprefix(f"{element}_") if element else name
+    return words(own)
+
+
+def capital(text: str) -> str:
+    """`text` with its first letter as at the start of a sentence."""
+    return text[:1].upper() + text[1:]
+
+
+def listing(items: Iterable[str], *, last: str = "and") -> str:
+    """ "a", "a and b", "a, b and c"."""
+    *head, tail = list(items) or [""]
+    return f"{', '.join(head)} {last} {tail}" if head else tail
+
+
+def unit_of(coordinate: str, units: Mapping[str, str]) -> str:
+    """The unit of a signal or of a coordinate derived from one ("joint_velocity" from "joint_angle"); empty if not known."""
+    if coordinate in units or coordinate in _COORDINATES:
+        return units.get(coordinate, _COORDINATES.get(coordinate, ""))
+    stem, _, rate = coordinate.rpartition("_")
+    base = units.get(f"{stem}_angle") or units.get(f"{stem}_position")
+    if base is None or rate not in _RATES:
+        return ""
+    return f"{base}/s" if _RATES[rate] == 1 else f"{base}/s^2"
