@@ -1,0 +1,27 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::actuation {
+/// Gain error: the effort is not what the torque constant says.
+///
+///   u -> (1 + e) u                                                        (S2 sec. 4)
+///
+/// u: effort by the torque constant, N (N·m). e: relative error, 1. e = 0 switches it off.
+template <class T>
+struct GainError {
+  static constexpr std::string_view name = "gain_error", source = "S2 sec. 4", equation = "(1 + e) u",
+                                    summary = "actuation gain error: the effort is not what the torque constant says";
+  static constexpr unsigned roles = 0, sees = sees_nothing;
+  T error;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&GainError::error, "gain_error", Dimension::ratio, Purpose::amplitude, 0.1, -0.9, inf,
+                                "relative error of the torque constant")};
+  }
+  T lateness() const { return T(0.0); }
+  template <class S>
+  S apply(const S& signal) const {
+    return signal + error * signal;
+  }
+};
+}  // namespace tendonlab::actuation

@@ -1,0 +1,145 @@
+#include "tendonlab/bindings/convert.hpp"
+#include "tendonlab/core/error.hpp"
+
+namespace tendonlab::bindings {
+namespace {
+using integrate::Experiment;
+using integrate::Loop;
+using integrate::Signal;
+
+constexpr const char* dimension_names[] = {"effort", "flow", "displacement", "inertia", "damping", "stiffness", "ratio",
+                                           "time", "command", "effort_per_command", "output"};
+constexpr const char* purpose_names[] = {"structure", "amplitude", "share", "shape"};
+
+py::dict signal_info(const SignalInfo& s) {
+  return py::dict(py::arg("name") = s.name, py::arg("meaning") = s.meaning,
+                  py::arg("dimension") = dimension_names[static_cast<int>(s.dimension)],
+                  py::arg("required") = s.required, py::arg("axis") = s.axis);
+}
+py::dict parameter_info(const ParameterInfo& p) {
+  return py::dict(py::arg("name") = p.name, py::arg("element") = p.element, py::arg("effect") = p.effect,
+                  py::arg("own") = p.own, py::arg("dimension") = dimension_names[static_cast<int>(p.dimension)],
+                  py::arg("purpose") = purpose_names[static_cast<int>(p.purpose)], py::arg("typical") = p.typical,
+                  py::arg("lower") = p.lower, py::arg("upper") = p.upper, py::arg("meaning") = p.meaning);
+}
+py::dict effect_info(const EffectInfo& e) {
+  return py::dict(py::arg("name") = e.name, py::arg("element") = e.element, py::arg("effect") = e.effect,
+                  py::arg("equation") = e.equation, py::arg("source") = e.source, py::arg("summary") = e.summary,
+                  py::arg("parameters") = e.parameters, py::arg("roles") = e.roles,
+                  py::arg("structural") = e.structural);
+}
+template <class Items, class F>
+py::list listed(const Items& items, F make) {
+  py::list all;
+  for (const auto& item : items) all.append(make(item));
+  return all;
+}
+py::dict system_info(const std::string& kind) {
+  const SystemInfo& s = model(kind).info();
+  return py::dict(py::arg("kind") = s.kind, py::arg("equation") = s.equation, py::arg("dof") = s.dof,
+                  py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
+                  py::arg("parameters") = listed(s.parameters, parameter_info),
+                  py::arg("effects") = listed(s.effects, effect_info), py::arg("elements") = s.elements,
+                  py::arg("ports") = s.ports, py::arg("nominal") = s.nominal);
+}
+
+Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
+  const auto pieces = static_cast<std::size_t>(knots.size());
+  if (coefficients.ndim() != 2 || coefficients.shape(1) != 4 || static_cast<std::size_t>(coefficients.shape(0)) != pieces)
+    throw ParameterError(sentence("signal with ", pieces, " knots: expected coefficients of shape (", pieces, ", 4)"));
+  Signal s;
+  s.holds = holds;
+  s.knots.assign(knots.data(), knots.data() + pieces);
+  s.coefficients.resize(pieces);
+  for (std::size_t i = 0; i < pieces; ++i)
+    for (std::size_t k = 0; k < 4; ++k) s.coefficients[i][k] = coefficients.data()[4 * i + k];
+  return s;
+}
+
+Loop make_loop(const std::string& kind, int axis, int output, double proportional, double derivative,
+               double reference_weight, double limit, double sample_time, const Signal& reference,
+               const Signal& disturbance) {
+  Loop loop;
+  if (kind == "injection")
+    loop.kind = Loop::Kind::injection;
+  else if (kind == "controller")
+    loop.kind = Loop::Kind::controller;
+  else if (kind != "open")
+    throw ParameterError(sentence("loop kind = \"", kind, "\": expected open, injection or controller"));
+  loop.axis = axis, loop.output = output, loop.proportional = proportional, loop.derivative = derivative;
+  loop.reference_weight = reference_weight, loop.limit = limit, loop.sample_time = sample_time;
+  loop.reference = reference, loop.disturbance = disturbance;
+  return loop;
+}
+
+Experiment make_experiment(const std::string& kind, std::vector<double> time, std::vector<Signal> inputs, const Loop& loop,
+                           std::vector<double> position, std::vector<double> velocity) {
+  const SystemInfo& info = model(kind).info();
+  const auto dof = static_cast<std::size_t>(info.dof);
+  if (time.size() < 2) throw ParameterError(sentence("experiment with ", time.size(), " samples: expected at least 2"));
+  for (std::size_t i = 1; i < time.size(); ++i)
+    if (!(time[i] > time[i - 1]))
+      throw ParameterError(sentence("time[", i, "] = ", time[i], " s: expected more than ", time[i - 1], " s"));
+  if (inputs.size() != info.inputs.size())
+    throw ParameterError(sentence(inputs.size(), " inputs: ", kind, " expects ", info.inputs.size()));
+  if (position.size() != dof || velocity.size() != dof)
+    throw ParameterError(sentence("initial state: ", kind, " expects ", dof, " positions and as many velocities"));
+  return {std::move(time), std::move(inputs), loop, std::move(position), std::move(velocity)};
+}
+
+py::dict simulate(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
+                  const Experiment& experiment, const std::vector<std::pair<std::string, int>>& seeds,
+                  const integrate::Settings& settings) {
+  const Model& of = model(kind);
+  const Configuration configuration = make_configuration(of, values, active);
+  const auto wanted = make_seeds(seeds);
+  integrate::Trajectory run;
+  {
+    py::gil_scoped_release release;
+    run = of.simulate(configuration, experiment, wanted, settings);
+  }
+  const auto samples = static_cast<py::ssize_t>(run.samples);
+  py::dict out(py::arg("attempts") = run.attempts, py::arg("rejected") = run.rejected, py::arg("events") = run.events);
+  out["outputs"] = to_array(std::move(run.value), {run.channels, samples});
+  if (!seeds.empty()) out["gradient"] = to_array(std::move(run.gradient), {run.width, run.channels, samples});
+  if (settings.ports)
+    out["ports"] = to_array(std::move(run.port), {static_cast<py::ssize_t>(of.info().ports.size()), 4, samples});
+  return out;
+}
+}  // namespace
+
+void bind_systems(py::module_& module) {
+  module.def("kinds", [] {
+    std::vector<std::string> names;
+    for (const auto& m : models()) names.push_back(m->info().kind);
+    return names;
+  }, "Names of all systems.");
+  module.def("system_info", &system_info, py::arg("kind"), "Everything a system states about itself, as plain types.");
+  py::class_<Signal>(module, "Signal", "A piecewise cubic in time, from knots (m,) and coefficients (m, 4) about each knot.")
+      .def(py::init<>())
+      .def(py::init(&make_signal), py::arg("knots"), py::arg("coefficients"), py::arg("holds"));
+  py::class_<Loop>(module, "Loop", "How the command comes about: open, injection or controller.")
+      .def(py::init<>())
+      .def(py::init(&make_loop), py::kw_only(), py::arg("kind"), py::arg("axis"), py::arg("output"),
+           py::arg("proportional"), py::arg("derivative"), py::arg("reference_weight"), py::arg("limit"),
+           py::arg("sample_time"), py::arg("reference"), py::arg("disturbance"));
+  py::class_<Experiment>(module, "Experiment", "One experiment as the simulator needs it.")
+      .def(py::init(&make_experiment), py::kw_only(), py::arg("kind"), py::arg("time"), py::arg("inputs"),
+           py::arg("loop"), py::arg("position"), py::arg("velocity"))
+      .def_readonly("time", &Experiment::time)
+      .def_readonly("position", &Experiment::position)
+      .def_readonly("velocity", &Experiment::velocity);
+  py::class_<integrate::Settings>(module, "Settings", "Tolerance and scales of the integration.")
+      .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts, bool ports) {
+             require_within("tolerance", tolerance, 1e-14, 0.1, "1");
+             require_within("position_scale", position_scale, 1e-300, 1e300, "");
+             require_within("velocity_scale", velocity_scale, 1e-300, 1e300, "");
+             return integrate::Settings{tolerance, position_scale, velocity_scale, max_attempts, ports};
+           }),
+           py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,
+           py::arg("velocity_scale") = 1e-2, py::arg("max_attempts") = 20'000'000L, py::arg("ports") = false);
+  module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
+             py::arg("seeds"), py::arg("settings"),
+             "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, 4, samples).");
+}
+}  // namespace tendonlab::bindings

@@ -1,0 +1,80 @@
+#pragma once
+// The scalar `double` beside the derivative types: the same names for all of them, so that a law is one text.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#define TENDONLAB_INLINE inline __attribute__((always_inline))
+
+namespace tendonlab {
+/// What control decisions are made of (step size, modes, error): derivatives are dropped there on purpose.
+template <class T>
+struct PlainOf {
+  using type = T;
+};
+template <class T>
+using Plain = typename PlainOf<T>::type;
+
+template <class S>
+S zero() {
+  return S{};
+}
+template <class S>
+S square(const S& a) {
+  return a * a;
+}
+
+inline double plain(double a) { return a; }
+inline double select(bool condition, double a, double b) { return condition ? a : b; }
+inline double abs(double a) { return std::fabs(a); }
+
+/// exp(x), 1e-15 relative in [-90, 700], flat below: inline, so that laws cost what the arithmetic costs (Estrin's scheme).
+TENDONLAB_INLINE double exp(double x) {
+  constexpr double magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
+  x = x > -90.0 ? x : -90.0;
+  double n = x * 1.4426950408889634 + magic;
+  std::int64_t exponent;
+  std::memcpy(&exponent, &n, sizeof n);
+  n = n - magic;
+  const double r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10, r2 = r * r, r4 = r2 * r2;
+  double p = ((r * (1. / 39916800) + (1. / 3628800)) * r2 + (r * (1. / 362880) + (1. / 40320))) * (r4 * r4) +
+             (((r * (1. / 5040) + (1. / 720)) * r2 + (r * (1. / 120) + (1. / 24))) * r4 +
+              ((r * (1. / 6) + .5) * r2 + (r + 1.)));
+  std::int64_t bits;
+  std::memcpy(&bits, &p, sizeof p);
+  bits += static_cast<std::int64_t>(static_cast<std::uint64_t>(exponent) << 52);
+  std::memcpy(&p, &bits, sizeof p);
+  return p;
+}
+
+/// sin(2 pi turns): range reduction by rounding, then an odd polynomial.
+TENDONLAB_INLINE double turn_sine(double turns) {
+  constexpr double magic = 6755399441055744.0;
+  double r = turns - ((turns + magic) - magic);
+  r = select(r > 0.25, 0.5 - r, r);
+  r = select(r < -0.25, -0.5 - r, r);
+  const double x = r * 6.283185307179586, s = x * x;
+  double p = s * (-7.647163731819816e-13) + 1.605904383682161e-10;
+  p = p * s - 2.505210838544172e-08;
+  p = p * s + 2.755731922398589e-06;
+  p = p * s - 1.984126984126984e-04;
+  p = p * s + 8.333333333333333e-03;
+  p = p * s - 1.666666666666667e-01;
+  return x + x * s * p;
+}
+inline constexpr double inverse_turn = 0.15915494309189535;
+TENDONLAB_INLINE double sin(double x) { return turn_sine(x * inverse_turn); }
+TENDONLAB_INLINE double cos(double x) { return turn_sine(x * inverse_turn + 0.25); }
+
+/// A parameter that laws divide by: keeps its reciprocal, so that `velocity / stribeck_velocity` costs a product.
+template <class T>
+struct Divisor {
+  T value, reciprocal;
+  Divisor() = default;
+  Divisor(const T& a) : value(a), reciprocal(1.0 / a) {}
+  template <class S>
+  friend S operator/(const S& a, const Divisor& b) {
+    return a * b.reciprocal;
+  }
+};
+}  // namespace tendonlab

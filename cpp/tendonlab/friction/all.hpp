@@ -1,0 +1,11 @@
+#pragma once
+#include "tendonlab/friction/asymmetry.hpp"
+#include "tendonlab/friction/coulomb.hpp"
+#include "tendonlab/friction/load_dependence.hpp"
+#include "tendonlab/friction/presliding.hpp"
+#include "tendonlab/friction/stribeck.hpp"
+#include "tendonlab/friction/viscous.hpp"
+
+namespace tendonlab::friction {
+using All = Laws<Coulomb, Viscous, Stribeck, Presliding, LoadDependence, Asymmetry>;
+}

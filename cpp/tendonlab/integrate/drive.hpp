@@ -1,0 +1,152 @@
+#pragma once
+// The inputs of a running simulation: logged signals, the loop that closes over the system, delays.
+#include <algorithm>
+#include <deque>
+
+#include "tendonlab/integrate/experiment.hpp"
+#include "tendonlab/integrate/past.hpp"
+#include "tendonlab/systems/system.hpp"
+
+namespace tendonlab::integrate {
+using systems::Motion;
+
+template <class T>
+class Drive {
+ public:
+  static constexpr int max_inputs = 4;
+
+  Drive(const Experiment& experiment, const T& command_delay, const T& sensor_delay, const T& sensor_bias)
+      : from(experiment), late(command_delay), sensor_late(sensor_delay), bias(sensor_bias),
+        shift(plain(command_delay)), remembers(needs_past()) {
+    pass(experiment.time.front());
+  }
+
+  /// The command that reaches the actuator, as a function of the motion.
+  template <class S, std::size_t n>
+  S command_of(const std::array<S, n>& position, const std::array<S, n>& velocity, const S& now) const {
+    const Loop& loop = from.loop;
+    if (loop.kind == Loop::Kind::controller) {
+      if (loop.sample_time > 0) return lift<S>(held);
+      const S u = unlimited(position, velocity, now);
+      const double edge = remembers ? clipped(plain(u)) : side;
+      const S limited = edge == 0.0 ? u : constant<S>(edge * loop.limit);
+      return limited + from.loop.disturbance.value(S(now - late), disturbance_piece);
+    }
+    const S u = from.inputs[0].value(S(now - late), piece[0]);
+    if (loop.kind == Loop::Kind::open) return u;
+    // The sensor's model is inverted on the logged signal: its delay needs no past of the simulation.
+    const S then = now + sensor_late;
+    const auto axis = static_cast<std::size_t>(loop.axis);
+    return u + loop.proportional * (loop.reference.value(then, reference_piece) - bias - position[axis]) +
+           loop.derivative * (loop.reference.slope(then, reference_piece) - velocity[axis]);
+  }
+  template <class S, int n>
+  S command(const Motion<S, n>& at) const {
+    return command_of(at.position, at.velocity, at.time);
+  }
+  template <int k, class S>
+  S input(const S& now) const {
+    return from.inputs[k].value(now, piece[k]);
+  }
+
+  /// What a continuous controller would command if nothing clipped it: the guard of its saturation.
+  template <class S, std::size_t n>
+  S unlimited(const std::array<S, n>& position, const std::array<S, n>& velocity, const S& now) const {
+    const Loop& loop = from.loop;
+    const auto axis = static_cast<std::size_t>(loop.axis);
+    const S then = now - late;
+    S y = position[axis], rate = velocity[axis];
+    if (remembers) std::tie(y, rate) = past.reading(S(then - sensor_late), y, rate, now);
+    const S r = loop.reference.value(then, reference_piece);
+    const S dr = loop.reference_weight * loop.reference.slope(then, reference_piece);
+    return loop.proportional * (r - (y + bias)) + loop.derivative * (dr - rate);
+  }
+  bool saturates() const {
+    return from.loop.kind == Loop::Kind::controller && from.loop.sample_time == 0 && !remembers &&
+           from.loop.limit < std::numeric_limits<double>::infinity();
+  }
+
+  /// The next instant after `now` at which an input jumps.
+  double next_kink(double now) const {
+    double next = Signal::inf_time;
+    const auto look = [&](const Signal& s, int i, double by) {
+      if (s.holds) next = std::min(next, s.next_change(i) + by);
+    };
+    look(from.inputs[0], piece[0], shift);
+    for (std::size_t k = 1; k < from.inputs.size(); ++k) look(from.inputs[k], piece[k], 0.0);
+    look(from.loop.disturbance, disturbance_piece, shift);
+    look(from.loop.reference, reference_piece, shift);
+    if (samples()) next = std::min(next, tick_time(tick));
+    for (const auto& c : pending) next = std::min(next, c.due);
+    return next > now ? next : std::nextafter(now, Signal::inf_time);
+  }
+  /// Moves every held signal to the piece that begins at `now`, which the stepper has landed on.
+  void pass(double now) {
+    const auto move = [&](const Signal& s, int& i, double by) {
+      while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
+    };
+    move(from.inputs[0], piece[0], shift);
+    for (std::size_t k = 1; k < from.inputs.size(); ++k) move(from.inputs[k], piece[k], 0.0);
+    move(from.loop.disturbance, disturbance_piece, shift);
+    move(from.loop.reference, reference_piece, shift);
+    while (!pending.empty() && pending.front().due <= now) {
+      held = pending.front().value;
+      pending.pop_front();
+    }
+  }
+  /// The sampled controller reads its sensor when its clock ticks; the command takes effect after the delay.
+  template <int n>
+  void sample(const Motion<T, n>& at, double now) {
+    if (!samples() || now < tick_time(tick)) return;
+    const Loop& loop = from.loop;
+    const auto axis = static_cast<std::size_t>(loop.axis);
+    T y = at.position[axis], rate = at.velocity[axis];
+    if (plain(sensor_late) > 0) std::tie(y, rate) = past.reading(T(now - sensor_late), y, rate, T(now));
+    y = y + bias;
+    int unshifted = loop.reference.holds ? loop.reference.locate(now, reference_piece) : reference_piece;
+    const T r = loop.reference.value(T(now), unshifted);
+    if (tick == 0) last_reading = y, last_reference = r;
+    T u = loop.proportional * (r - y) + (loop.derivative / loop.sample_time) *
+                                            (loop.reference_weight * (r - last_reference) - (y - last_reading));
+    if (plain(u) > loop.limit) u = T(loop.limit);
+    if (plain(u) < -loop.limit) u = T(-loop.limit);
+    last_reading = y, last_reference = r;
+    int at_tick = loop.disturbance.holds ? loop.disturbance.locate(now, disturbance_piece) : disturbance_piece;
+    pending.push_back({tick_time(tick) + shift, u + loop.disturbance.value(T(now), at_tick)});
+    ++tick;
+    pass(now);
+  }
+  bool samples() const { return from.loop.kind == Loop::Kind::controller && from.loop.sample_time > 0; }
+
+  /// How far back the loop reads, s.
+  double lateness() const { return shift + plain(sensor_late); }
+  /// Longest step over which a delayed reading is known in advance.
+  double longest_step() const {
+    return remembers && lateness() > Past<T>::shortest ? lateness() : Signal::inf_time;
+  }
+
+  const Experiment& from;
+  const T late, sensor_late, bias;
+  const double shift;
+  const bool remembers;  ///< does the loop read the past?
+  double side = 0;       ///< mode of the saturation: -1, 0, +1
+  Past<T> past;
+
+ private:
+  struct Command {
+    double due;
+    T value;
+  };
+  bool needs_past() const {
+    return from.loop.kind == Loop::Kind::controller && (plain(sensor_late) > 0 || (plain(late) > 0 && !samples()));
+  }
+  double clipped(double u) const { return u > from.loop.limit ? 1.0 : u < -from.loop.limit ? -1.0 : 0.0; }
+  double tick_time(long k) const { return from.time.front() + static_cast<double>(k) * from.loop.sample_time; }
+
+  mutable std::array<int, max_inputs> piece{};
+  mutable int reference_piece = 0, disturbance_piece = 0;
+  std::deque<Command> pending;
+  long tick = 0;
+  T held{}, last_reading{}, last_reference{};
+};
+}  // namespace tendonlab::integrate

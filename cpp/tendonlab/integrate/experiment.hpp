@@ -1,0 +1,53 @@
+#pragma once
+// What a simulation is asked, and what it answers: plain data, the same for every system.
+#include <limits>
+#include <vector>
+
+#include "tendonlab/integrate/signal.hpp"
+
+namespace tendonlab::integrate {
+/// How the command of the actuator comes about. u: command, r: reference, y: reading of the looped sensor.
+struct Loop {
+  enum class Kind {
+    open,       ///< u as logged
+    injection,  ///< u as logged, and what pulls the simulated sensor to the logged one (a replay, not part of the rig)
+    controller  ///< u = clip(P (r - y) + D (w r' - y')) + disturbance, in continuous or sampled time
+  };
+  Kind kind = Kind::open;
+  int axis = 0, output = 0;  ///< the degree of freedom that is fed back, and its output
+  double proportional = 0, derivative = 0;
+  double reference_weight = 1;  ///< w: 1 where the error is differentiated, 0 where the measurement is
+  double limit = std::numeric_limits<double>::infinity();
+  double sample_time = 0;  ///< s; 0: continuous
+  Signal reference, disturbance;
+};
+
+/// One experiment as the simulator needs it.
+struct Experiment {
+  std::vector<double> time;              ///< instants of the samples, s, increasing
+  std::vector<Signal> inputs;            ///< in the order of the system's inputs; empty ones are zero
+  Loop loop;
+  std::vector<double> position, velocity;  ///< initial state, a degree of freedom each
+};
+
+/// What to differentiate by, beside the parameters: column k of the gradient is one derivative.
+struct Seed {
+  enum class Of { parameter, position, velocity } of = Of::parameter;
+  int index = 0;
+};
+
+struct Settings {
+  double tolerance = 1e-6;
+  double position_scale = 1e-2, velocity_scale = 1e-2;  ///< error is relative to scale + |value|
+  long max_attempts = 20'000'000;
+  bool ports = false;  ///< also record what each port sees and does
+};
+
+struct Trajectory {
+  int channels = 0, samples = 0, width = 0;
+  std::vector<double> value;     ///< [channel][sample]
+  std::vector<double> gradient;  ///< [column][channel][sample]
+  std::vector<double> port;      ///< [port][velocity, position, load, force][sample]
+  long attempts = 0, rejected = 0, events = 0;
+};
+}  // namespace tendonlab::integrate

@@ -1,0 +1,135 @@
+#pragma once
+// The arrowhead Jacobian of a system: the laws run on duals of what they see, the chain rule joins them with the ports.
+#include "tendonlab/integrate/rate.hpp"
+
+namespace tendonlab::integrate {
+/// Blocks of the Jacobian. Columns of `*_by`: positions, velocities, time.
+template <class System, class T>
+struct Arrowhead {
+  static constexpr int n = System::dof, nz = memories<System>, cells = nz > 0 ? nz : 1, columns = 2 * n + 1;
+  Rate<T, n, nz> rate;
+  T acceleration_by[n][columns], memory_by[cells][columns];  ///< at fixed memory
+  T decay[cells];                                            ///< -d rate_i / d z_i
+  T pull[cells][n];                                          ///< d acceleration_j / d z_i
+};
+
+/// One slot's response and its partials by the columns of the system.
+template <class Slot, class T, int columns>
+struct SlotBlocks {
+  static constexpr int has = Slot::states;
+  static constexpr bool seen[3] = {(Slot::sees & sees_velocity) != 0, (Slot::sees & sees_position) != 0,
+                                   (Slot::sees & sees_load) != 0};
+  static constexpr int outer = seen[0] + seen[1] + seen[2], inner = outer + has;
+  Response<T> value;
+  T force_by[columns], rate_by[columns], force_z{}, decay{};
+
+  template <class D>
+  TENDONLAB_INLINE SlotBlocks(const Slot& slot, const Sliding<D>& port, const T& z) {
+    using L = Dual<T, inner>;
+    Sliding<L> s;
+    s.direction = port.direction;
+    s.side = port.side;
+    const D* source[outer];
+    int k = 0;
+    const auto seed = [&](L& x, const D& from, bool is_seen) __attribute__((always_inline)) {
+      if (!is_seen) return;
+      x = variable<L>(from.value, k);
+      source[k++] = &from;
+    };
+    seed(s.velocity, port.velocity, seen[0]);
+    seed(s.position, port.position, seen[1]);
+    seed(s.load, port.load, seen[2]);
+    L own(z);
+    if constexpr (has > 0) own.d[inner - 1] = T(1.0);
+    const Response<L> f = slot.respond(s, own);
+    value = {f.force.value, f.rate.value};
+    chain_rule(force_by, f.force, source);
+    if constexpr (has > 0) {
+      chain_rule(rate_by, f.rate, source);
+      force_z = f.force.d[inner - 1];
+      decay = -f.rate.d[inner - 1];
+    }
+  }
+
+ private:
+  template <class L, class D>
+  static TENDONLAB_INLINE void chain_rule(T (&by)[columns], const L& f, const D* const (&source)[outer]) {
+    for (std::size_t q = 0; q < columns; ++q) {
+      T sum = f.d[0] * source[0]->d[q];
+      for (std::size_t e = 1; e < outer; ++e) sum = sum + f.d[e] * source[e]->d[q];
+      by[q] = sum;
+    }
+  }
+};
+
+/// The ports in duals of (positions, velocities, time).
+template <class System, class T, class Inputs>
+TENDONLAB_INLINE auto couple_in_duals(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
+                                      const Inputs& in) {
+  constexpr int n = System::dof;
+  using D = Dual<T, 2 * n + 1>;
+  Motion<D, n> at;
+  for (std::size_t j = 0; j < n; ++j) {
+    at.position[j] = variable<D>(y.at.position[j], static_cast<int>(j));
+    at.velocity[j] = variable<D>(y.at.velocity[j], n + static_cast<int>(j));
+  }
+  at.time = variable<D>(y.at.time, 2 * n);
+  return system.couple(at, frame.mode, in);
+}
+
+/// Adds what slot i does to the blocks, as efforts: inertia comes last.
+template <int i, class System, class T, class Port>
+TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, const Port& port,
+                               const StateOf<System, T>& y) {
+  using Slot = SlotOf<System, i>;
+  constexpr int n = System::dof, columns = 2 * n + 1, m = memory_before<System, i>(), has = Slot::states;
+  const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+  if constexpr (has > 0) {
+    a.decay[m] = T(0.0);
+    for (int q = 0; q < columns; ++q) a.memory_by[m][q] = T(0.0);
+    for (int j = 0; j < n; ++j) a.pull[m][j] = T(0.0);
+  }
+  if (slot.active == 0) return;
+  T z(0.0);
+  if constexpr (has > 0) z = y.memory[m];
+  const SlotBlocks<Slot, T, columns> b(slot, port, z);
+  unroll<n>([&](auto j) __attribute__((always_inline)) {
+    if constexpr (System::joined[i][j]) {
+      const T& lever = system.lever[i][j];
+      a.rate.acceleration[j] = a.rate.acceleration[j] - lever * b.value.force;
+      for (int q = 0; q < columns; ++q) a.acceleration_by[j][q] = a.acceleration_by[j][q] - lever * b.force_by[q];
+      if constexpr (has > 0) a.pull[m][j] = -(lever * b.force_z);
+    }
+  });
+  if constexpr (has > 0) {
+    a.rate.memory[m] = b.value.rate;
+    a.decay[m] = b.decay;
+    for (int q = 0; q < columns; ++q) a.memory_by[m][q] = b.rate_by[q];
+  }
+}
+
+template <class System, class T, class Inputs>
+TENDONLAB_INLINE Arrowhead<System, T> linearise(const System& system, const StateOf<System, T>& y,
+                                                const Frame<System, T>& frame, const Inputs& in) {
+  constexpr int n = System::dof, columns = 2 * n + 1, nz = memories<System>;
+  const auto c = couple_in_duals(system, y, frame, in);
+  Arrowhead<System, T> a;
+  for (std::size_t j = 0; j < n; ++j) {
+    a.rate.acceleration[j] = c.applied[j].value;
+    for (std::size_t q = 0; q < columns; ++q) a.acceleration_by[j][q] = c.applied[j].d[q];
+  }
+  unroll<slots<System>>([&](auto i) __attribute__((always_inline)) { add_slot<i>(a, system, c.port[i], y); });
+  for (std::size_t j = 0; j < n; ++j) {
+    const T& inverse = system.inverse_inertia[j];
+    a.rate.acceleration[j] = a.rate.acceleration[j] * inverse;
+    for (int q = 0; q < columns; ++q) a.acceleration_by[j][q] = a.acceleration_by[j][q] * inverse;
+    for (int i = 0; i < nz; ++i) a.pull[i][j] = a.pull[i][j] * inverse;
+  }
+  if (frame.holds) {
+    frame.project([&](int j) -> T& { return a.rate.acceleration[static_cast<std::size_t>(j)]; });
+    for (int q = 0; q < columns; ++q) frame.project([&](int j) -> T& { return a.acceleration_by[j][q]; });
+    for (int i = 0; i < nz; ++i) frame.project([&](int j) -> T& { return a.pull[i][j]; });
+  }
+  return a;
+}
+}  // namespace tendonlab::integrate

@@ -1,0 +1,93 @@
+#pragma once
+// The rate of a system, from the one text of its laws, with what sticks held at rest.
+#include "tendonlab/systems/system.hpp"
+
+namespace tendonlab::integrate {
+using systems::Coupling;
+using systems::Motion;
+
+template <class F, std::size_t... i>
+TENDONLAB_INLINE constexpr void unroll(std::index_sequence<i...>, F&& f) {
+  (f(std::integral_constant<int, static_cast<int>(i)>{}), ...);
+}
+template <int n, class F>
+TENDONLAB_INLINE constexpr void unroll(F&& f) {
+  unroll(std::make_index_sequence<static_cast<std::size_t>(n)>{}, f);
+}
+
+template <class System, int i>
+using SlotOf = std::tuple_element_t<static_cast<std::size_t>(i), decltype(System::slot)>;
+template <class System>
+inline constexpr int slots = static_cast<int>(std::tuple_size_v<decltype(System::slot)>);
+/// Where the memory of slot i begins.
+template <class System, int i = slots<System>>
+constexpr int memory_before() {
+  if constexpr (i == 0)
+    return 0;
+  else
+    return memory_before<System, i - 1>() + SlotOf<System, i - 1>::states;
+}
+template <class System>
+inline constexpr int memories = memory_before<System>();
+/// Modes: the directions of sliding, then the sides of gaps.
+template <class System>
+inline constexpr int modes = System::directions + System::sides;
+
+template <class S, int dof, int nz>
+struct State {
+  Motion<S, dof> at;
+  std::array<S, static_cast<std::size_t>(nz)> memory{};
+};
+template <class System, class T>
+using StateOf = State<T, System::dof, memories<System>>;
+template <class S, int dof, int nz>
+struct Rate {
+  std::array<S, static_cast<std::size_t>(dof)> acceleration{};
+  std::array<S, static_cast<std::size_t>(nz)> memory{};
+};
+
+/// What is frozen over a step: the modes, and the projection that keeps sticking ports at rest.
+template <class System, class T>
+struct Frame {
+  std::array<Plain<T>, static_cast<std::size_t>(modes<System>)> mode{};
+  bool holds = false;  ///< does any port stick?
+  T keep[System::dof][System::dof];
+
+  /// What is left of accelerations once the sticking ports hold.
+  template <class Column>
+  void project(Column&& column) const {
+    constexpr int n = System::dof;
+    T free[n];
+    for (int j = 0; j < n; ++j) free[j] = column(j);
+    for (int j = 0; j < n; ++j) {
+      T sum(0.0);
+      for (int l = 0; l < n; ++l) sum = sum + keep[j][l] * free[l];
+      column(j) = sum;
+    }
+  }
+};
+
+template <class System, class T, class Inputs>
+TENDONLAB_INLINE auto rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
+                           const Inputs& in) {
+  constexpr int n = System::dof;
+  const auto c = system.couple(y.at, frame.mode, in);
+  Rate<T, n, memories<System>> r;
+  r.acceleration = c.applied;
+  unroll<slots<System>>([&](auto i) __attribute__((always_inline)) {
+    constexpr int m = memory_before<System, i>(), has = SlotOf<System, i>::states;
+    const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+    if (slot.active == 0) return;
+    T z(0.0);
+    if constexpr (has > 0) z = y.memory[m];
+    const Response<T> f = slot.respond(c.port[i], z);
+    if constexpr (has > 0) r.memory[m] = f.rate;
+    unroll<n>([&](auto j) __attribute__((always_inline)) {
+      if constexpr (System::joined[i][j]) r.acceleration[j] = r.acceleration[j] - system.lever[i][j] * f.force;
+    });
+  });
+  for (std::size_t j = 0; j < n; ++j) r.acceleration[j] = r.acceleration[j] * system.inverse_inertia[j];
+  if (frame.holds) frame.project([&](int j) -> T& { return r.acceleration[static_cast<std::size_t>(j)]; });
+  return r;
+}
+}  // namespace tendonlab::integrate

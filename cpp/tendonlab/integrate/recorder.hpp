@@ -1,0 +1,91 @@
+#pragma once
+// Writes outputs at the instants of the samples, through the sensors: bias by their chain, delay by an earlier instant.
+#include "tendonlab/integrate/simulation.hpp"
+
+namespace tendonlab::integrate {
+template <class System, class T>
+class Recorder {
+  static constexpr int n = System::dof, channels = static_cast<int>(System::outputs.size()), ports = slots<System>;
+  using Y = StateOf<System, T>;
+
+ public:
+  /// `column`: the first column of the trajectory's gradient that this run fills, `width` of them.
+  Recorder(const System& of, const Experiment& with, Trajectory& into, int first_column, int columns, bool with_ports)
+      : system(of), contact(of), time(with.time), out(into), column(first_column), width(columns), records_ports(with_ports) {
+    for (std::size_t c = 0; c < channels; ++c) delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0;
+  }
+  template <class Inputs>
+  void operator()(const Step<Y>& s, double start, double length, double taken, const Frame<System, T>& frame,
+                  const Inputs& in) {
+    const double reached = start + taken + 1e-12 * (1.0 + std::fabs(start)), per_length = 1.0 / length;
+    if (!late) {
+      for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
+        const Y y = state(s, T((time[next[0]] - start) * per_length), time[next[0]]);
+        const auto seen = observe(y, frame, in);
+        for (std::size_t c = 0; c < channels; ++c) write(c, next[0], system.sensor[c].apply(seen[c]));
+      }
+    } else {
+      for (std::size_t c = 0; c < channels; ++c)
+        for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
+          const T share = (time[next[c]] - start - delay[c]) * per_length;
+          const Y y = state(s, plain(share) > 0 ? share : T(0.0), time[next[c]] - plain(delay[c]));
+          write(c, next[c], system.sensor[c].apply(observe(y, frame, in)[c]));
+        }
+    }
+    if (!records_ports) return;
+    for (; next_port < time.size() && time[next_port] <= reached; ++next_port)
+      write_ports(state(s, T((time[next_port] - start) * per_length), time[next_port]), frame, in);
+  }
+
+ private:
+  static Y state(const Step<Y>& s, const T& share, double now) {
+    Y y = s.at(share);
+    y.at.time = T(now);
+    return y;
+  }
+  template <class Inputs>
+  auto observe(const Y& y, const Frame<System, T>& frame, const Inputs& in) const {
+    return system.observe(y.at, [&](auto i) {
+      const auto c = system.couple(y.at, frame.mode, in);
+      T z(0.0);
+      if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
+      return std::get<static_cast<std::size_t>(i)>(system.slot).respond(c.port[i], z).force;
+    });
+  }
+  void write(std::size_t channel, std::size_t sample, const T& value) {
+    out.value[channel * time.size() + sample] = plain(value);
+    if constexpr (!std::is_same_v<T, double>)
+      for (int k = 0; k < width; ++k)
+        out.gradient[(static_cast<std::size_t>(column + k) * channels + channel) * time.size() + sample] = value.derivative(k);
+  }
+  /// Velocity, position, load and force of each port; a sticking port's friction is what holds it, borne by the first
+  /// slot of its mode.
+  template <class Inputs>
+  void write_ports(const Y& y, const Frame<System, T>& frame, const Inputs& in) {
+    const auto c = system.couple(y.at, frame.mode, in);
+    const auto push = contact.holding(y, frame, in);
+    unroll<ports>([&](auto i) {
+      T z(0.0);
+      if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
+      const auto& port = c.port[i];
+      double force = plain(std::get<static_cast<std::size_t>(i)>(system.slot).respond(port, z).force);
+      constexpr int m = System::ports[i].direction;
+      if constexpr (m >= 0)
+        if (contact.bearer(m) == i) force += push[m];
+      const double row[4] = {plain(port.velocity), plain(port.position), plain(port.load), force};
+      for (std::size_t k = 0; k < 4; ++k) out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + next_port] = row[k];
+    });
+  }
+
+  const System& system;
+  const Contact<System, T> contact;
+  const std::vector<double>& time;
+  Trajectory& out;
+  const int column, width;
+  const bool records_ports;
+  bool late = false;
+  std::array<T, channels> delay{};
+  std::array<std::size_t, channels> next{};
+  std::size_t next_port = 0;
+};
+}  // namespace tendonlab::integrate

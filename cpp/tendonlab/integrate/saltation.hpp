@@ -1,0 +1,65 @@
+#pragma once
+// Derivatives across an event: time stays plain, and where the rate jumps the state's derivative jumps by
+// (rate before - rate after) dt/dp. For plain scalars this is nothing.
+#include "tendonlab/integrate/contact.hpp"
+
+namespace tendonlab::integrate {
+template <class System, class T>
+class Jump {
+  static constexpr int n = System::dof, nz = memories<System>;
+
+ public:
+  /// Before the modes change: how the instant of the event moves with the parameters. mode -1: a jump of the inputs.
+  template <class Simulation>
+  Jump(const Simulation& s, int mode) {
+    if constexpr (!std::is_same_v<T, double>) {
+      before = rate(s.system, s.y, s.frame, s.drive);
+      moves = T(0.0) * s.drive.late;
+      if (mode < 0)
+        moves = s.drive.late;  // the command is late by a parameter: so is its jump
+      else
+        moves = of_guard(s, mode);
+    } else {
+      static_cast<void>(s), static_cast<void>(mode);
+    }
+  }
+  template <class Simulation>
+  void apply(Simulation& s) const {
+    if constexpr (!std::is_same_v<T, double>) {
+      const auto after = rate(s.system, s.y, s.frame, s.drive);
+      for (std::size_t j = 0; j < n; ++j)
+        shift(s.y.at.velocity[j], plain(before.acceleration[j]) - plain(after.acceleration[j]));
+      for (std::size_t i = 0; i < nz; ++i) shift(s.y.memory[i], plain(before.memory[i]) - plain(after.memory[i]));
+    } else {
+      static_cast<void>(s);
+    }
+  }
+
+ private:
+  void shift(T& x, double jump) const {
+    const T slope = jump * moves;
+    for (std::size_t i = 0; i < sizeof(x.d) / sizeof(x.d[0]); ++i) x.d[i] += slope.d[i];
+  }
+  /// dt/dp = -g_p / g_t of the guard g whose root the event is; its value is of no interest.
+  template <class Simulation>
+  T of_guard(const Simulation& s, int mode) const {
+    const auto& at = s.y.at;
+    if (mode < System::directions) {
+      if (s.frame.mode[static_cast<std::size_t>(mode)] == 0.0) return T(0.0);  // a release: the rate is continuous
+      systems::Motion<T, n> change;
+      change.velocity = before.acceleration;
+      return quotient(s.contact.sliding_velocity(mode, at), plain(s.contact.sliding_velocity(mode, change)));
+    }
+    if (mode >= modes<System>) return T(0.0);  // saturation: the rate is continuous
+    systems::Motion<T, n> change;
+    change.position = at.velocity;
+    const double side = plain(s.contact.stretch(mode, at)) > 0 ? 1.0 : -1.0;
+    return quotient(s.contact.stretch(mode, at) - side * s.contact.half_gap(mode),
+                    plain(s.contact.stretch(mode, change)));
+  }
+  static T quotient(const T& guard, double rate) { return rate == 0.0 ? T(0.0) : (-1.0 / rate) * guard; }
+
+  Rate<T, n, nz> before;
+  T moves{};
+};
+}  // namespace tendonlab::integrate

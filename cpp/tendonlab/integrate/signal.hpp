@@ -1,0 +1,51 @@
+#pragma once
+// A measured or prescribed signal: a piecewise cubic in time (constant pieces where the hardware holds its value).
+#include <array>
+#include <vector>
+
+#include "tendonlab/core/dual.hpp"
+
+namespace tendonlab::integrate {
+struct Signal {
+  std::vector<double> knots;                        ///< start of each piece, s, increasing
+  std::vector<std::array<double, 4>> coefficients;  ///< value, slope, half curvature, ... in time from the knot
+  bool holds = false;                               ///< pieces are constant: the stepper lands on their borders
+
+  bool empty() const { return knots.empty(); }
+  int pieces() const { return static_cast<int>(knots.size()); }
+
+  /// The piece that holds at `time`, looked for from `near`; the first and last pieces reach outwards.
+  int locate(double time, int near) const {
+    int i = near;
+    while (i + 1 < pieces() && knots[static_cast<std::size_t>(i + 1)] <= time) ++i;
+    while (i > 0 && knots[static_cast<std::size_t>(i)] > time) --i;
+    return i;
+  }
+  /// Value at time `t`; smooth signals move `piece`, held ones stay on it: it is a mode of the step.
+  template <class S>
+  S value(const S& t, int& piece) const {
+    if (empty()) return constant<S>(0.0);
+    if (!holds) piece = locate(plain(t), piece);
+    const auto& c = coefficients[static_cast<std::size_t>(piece)];
+    if (holds) return constant<S>(c[0]);
+    const S x = t - knots[static_cast<std::size_t>(piece)];
+    return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
+  }
+  template <class S>
+  S slope(const S& t, int& piece) const {
+    if (empty() || holds) return constant<S>(0.0);
+    piece = locate(plain(t), piece);
+    const auto& c = coefficients[static_cast<std::size_t>(piece)];
+    const S x = t - knots[static_cast<std::size_t>(piece)];
+    return c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
+  }
+  /// When a held value next changes after piece `i`; infinity if it never does.
+  double next_change(int i) const {
+    if (!holds) return inf_time;
+    for (std::size_t k = static_cast<std::size_t>(i) + 1; k < knots.size(); ++k)
+      if (coefficients[k][0] != coefficients[k - 1][0]) return knots[k];
+    return inf_time;
+  }
+  static constexpr double inf_time = 1e300;
+};
+}  // namespace tendonlab::integrate

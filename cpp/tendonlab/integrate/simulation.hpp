@@ -1,0 +1,236 @@
+#pragma once
+// One simulation: step control, events on the dense output, landing on jumps of the inputs. Knows no physics.
+#include "tendonlab/core/error.hpp"
+#include "tendonlab/integrate/contact.hpp"
+#include "tendonlab/integrate/drive.hpp"
+#include "tendonlab/integrate/saltation.hpp"
+
+namespace tendonlab::integrate {
+template <class System, class T, class Tableau = Rodas4>
+class Simulation {
+  static constexpr int n = System::dof, nz = memories<System>, num_modes = modes<System>, saturation = num_modes;
+  using Y = StateOf<System, T>;
+
+ public:
+  Simulation(const System& of, const Experiment& experiment, const Settings& with, Drive<T> inputs)
+      : system(of), settings(with), contact(of), drive(std::move(inputs)), t(experiment.time.front()),
+        end(experiment.time.back()) {
+    h = std::min(1e-4, 0.1 * (end - t));
+  }
+  Y y;  ///< the initial state before `run`, the final one after it
+
+  /// Integrates to the last sample, handing each accepted step to `record(step, start, length, taken, frame, drive)`.
+  template <class Record>
+  void run(Trajectory& trajectory, Record&& record) {
+    start();
+    while (t < end) {
+      if (++trajectory.attempts > settings.max_attempts)
+        throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,
+                                      " step attempts; expected to reach t = ", end,
+                                      " s: a parameter may be far too stiff, or the tolerance too small"));
+      const double reach = std::min(kink, end) - t;
+      double length = std::min(h, drive.longest_step());
+      const bool lands = length > 0.95 * reach;
+      if (lands) length = reach;
+      const auto step = advance<Tableau>(system, y, frame, drive, length);
+      const double wish = growth(step);
+      if (!(wish > 0)) {  // rejected
+        ++trajectory.rejected;
+        shrink(length * std::max(0.15, -wish));
+        continue;
+      }
+      Crossing first = earliest_crossing(step);
+      if (first.stale || (first.mode >= 0 && first.share < 0.97)) {  // dense output is less accurate inside a step
+        ++trajectory.rejected;
+        if (first.stale && length < 1e-9 * (1.0 + std::fabs(t)))
+          choose_again(first.mode);
+        else
+          shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
+        continue;
+      }
+      const double taken = first.mode >= 0 ? first.share * length : length;
+      record(step, t, length, taken, frame, drive);
+      if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
+      y = first.mode >= 0 ? step.at(first.share) : step.to;
+      t = first.mode < 0 && lands ? std::min(kink, end) : t + taken;
+      y.at.time = T(t);
+      h = lands ? std::max(h, length * wish) : length * wish;
+      if (first.mode >= 0) {
+        ++trajectory.events;
+        pass_event(first.mode);
+        h = 0.25 * length;
+      } else if (t >= kink) {
+        pass_kink();
+      }
+    }
+  }
+
+ private:
+  struct Crossing {
+    int mode = -1;
+    double share = 2;
+    bool stale = false;  ///< the step began on its guard, in a mode that does not hold
+  };
+  static constexpr double on_guard = 1e-13;
+
+  void start() {
+    y.at.time = T(t);
+    std::array<bool, num_modes> resting{};
+    for (int m = 0; m < num_modes; ++m) {
+      const auto i = static_cast<std::size_t>(m);
+      frame.mode[i] = m < System::directions ? 1.0 : 0.0;
+      if (!contact.guarded(m)) continue;
+      if (m < System::directions) {
+        const double v = plain(contact.sliding_velocity(m, y.at));
+        resting[i] = v == 0.0;
+        frame.mode[i] = v < 0 ? -1.0 : 1.0;
+      } else {
+        const double g = plain(contact.stretch(m, y.at)), gap = plain(contact.half_gap(m));
+        frame.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
+      }
+    }
+    drive.sample(y.at, t);
+    if (drive.saturates()) drive.side = limit_side();
+    kink = drive.next_kink(t);
+    contact.settle(y, frame, resting, drive);
+    refresh();
+  }
+
+  /// By how much the next step may grow (> 0), or minus the factor by which this one must shrink.
+  double growth(const Step<Y>& s) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto one = [](const T& error, const T& from, const T& to, double scale) {
+        return square(plain(error) / (scale + std::max(std::fabs(plain(from)), std::fabs(plain(to)))));
+      };
+      sum += one(s.error.at.position[j], y.at.position[j], s.to.at.position[j], settings.position_scale);
+      sum += one(s.error.at.velocity[j], y.at.velocity[j], s.to.at.velocity[j], settings.velocity_scale);
+    }
+    int counted = 2 * n;
+    unroll<slots<System>>([&](auto i) {
+      if constexpr (SlotOf<System, i>::states > 0) {
+        const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+        slot.template each<role::memory>([&](const auto& law) {
+          const double level = std::max(memory_level[i], 1e-300);
+          sum += square(plain(s.error.memory[memory_before<System, i>()]) / law.breakaway_displacement(level));
+          ++counted;
+        });
+      }
+    });
+    const double mean_square = sum / (settings.tolerance * settings.tolerance * counted);
+    if (!(mean_square < 1e300)) return -0.15;
+    const double factor = 0.9 / std::sqrt(std::sqrt(std::sqrt(std::max(mean_square, 1e-12))));
+    return mean_square <= 1.0 ? std::min(6.0, factor) : -factor;
+  }
+
+  double margin(int m, const Y& at) const {
+    if (m != saturation) return contact.margin(m, at, frame, drive);
+    const double u = plain(drive.unlimited(at.at.position, at.at.velocity, at.at.time)), limit = drive.from.loop.limit;
+    return drive.side == 0.0 ? limit - std::fabs(u) : drive.side * u - limit;
+  }
+  bool guarded(int m) const { return m == saturation ? drive.saturates() : contact.guarded(m); }
+
+  Crossing earliest_crossing(const Step<Y>& s) const {
+    Crossing first;
+    for (int m = 0; m <= saturation; ++m) {
+      if (!guarded(m)) continue;
+      const double after = margin(m, s.to);
+      if (after >= -on_guard) continue;
+      const double before = margin(m, y);
+      if (before <= on_guard) return {m, 0, true};
+      const double share = root(m, s, before, after);
+      if (share < first.share) first = {m, share, false};
+    }
+    return first;
+  }
+  /// Illinois on the dense output; ends on a point that the secant chose, never on a midpoint.
+  double root(int m, const Step<Y>& s, double low_value, double high_value) const {
+    double low = 0, high = 1, at = low_value / (low_value - high_value);
+    int side = 0;
+    for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
+      Y state = s.at(at);
+      state.at.time = s.from.at.time + at * (plain(s.to.at.time) - plain(s.from.at.time));
+      const double f = margin(m, state);
+      if (std::fabs(f) <= 1e-14) break;
+      if (f < 0) {
+        if (side < 0) low_value *= 0.5;
+        high = at, high_value = f, side = -1;
+      } else {
+        if (side > 0) high_value *= 0.5;
+        low = at, low_value = f, side = 1;
+      }
+      at = low + (high - low) * (low_value / (low_value - high_value));
+    }
+    return at;
+  }
+
+  /// Changes mode m at its root, and whatever follows from it at the same instant.
+  void pass_event(int m) {
+    const Jump<System, T> jump(*this, m);
+    turn(m);
+    jump.apply(*this);
+    refresh();
+  }
+  void turn(int m) {
+    std::array<bool, num_modes> turning{};
+    const auto i = static_cast<std::size_t>(m);
+    if (m == saturation) {
+      const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time));
+      drive.side = drive.side == 0.0 ? std::copysign(1.0, u) : 0.0;
+    } else if (m >= System::directions) {
+      frame.mode[i] = frame.mode[i] == 0.0 ? (plain(contact.stretch(m, y.at)) > 0 ? 1.0 : -1.0) : 0.0;
+    } else if (frame.mode[i] == 0.0) {
+      frame.mode[i] = contact.holding(y, frame, drive)[i] < 0 ? -1.0 : 1.0;
+    } else {
+      contact.rest(m, y.at);
+      turning[i] = true;
+    }
+    contact.settle(y, frame, turning, drive);
+  }
+  double limit_side() const {
+    const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time)), limit = drive.from.loop.limit;
+    return u > limit ? 1.0 : u < -limit ? -1.0 : 0.0;
+  }
+  void choose_again(int m) {
+    turn(m);
+    refresh();
+  }
+  void pass_kink() {
+    const Jump<System, T> jump(*this, -1);
+    drive.pass(t);
+    drive.sample(y.at, t);
+    if (drive.saturates()) drive.side = limit_side();
+    kink = drive.next_kink(t);
+    contact.settle(y, frame, {}, drive);
+    jump.apply(*this);
+    refresh();
+  }
+  /// The scale of each memory follows the friction level it stands for.
+  void refresh() {
+    const auto c = system.couple(y.at, frame.mode, drive);
+    unroll<slots<System>>([&](auto i) {
+      if constexpr (SlotOf<System, i>::states > 0) {
+        const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+        memory_level[i] = std::max(0.1 * memory_level[i], plain(slot.dry_level(c.port[i])));
+      }
+    });
+  }
+  void shrink(double to) {
+    h = to;
+    if (!(h > 1e-14 * (1.0 + std::fabs(t))))
+      throw NumericalError(sentence("simulation stopped at t = ", t, " s: the step fell to ", h,
+                                    " s; the state is not finite or changes faster than doubles resolve"));
+  }
+
+  const System& system;
+  const Settings& settings;
+  Contact<System, T> contact;
+  Frame<System, T> frame;
+  Drive<T> drive;
+  double t, end, h, kink = 0;
+  double memory_level[slots<System>] = {};
+
+  template <class, class>
+  friend class Jump;
+};
+}  // namespace tendonlab::integrate

@@ -1,0 +1,88 @@
+#pragma once
+// One Rosenbrock step: stages, arrowhead elimination, error, dense output. Knows rates and blocks, no physics.
+#include "tendonlab/integrate/elimination.hpp"
+#include "tendonlab/integrate/tableau.hpp"
+
+namespace tendonlab::integrate {
+template <class Y>
+void add(Y& y, double s, const Y& k) {
+  for (std::size_t j = 0; j < y.at.position.size(); ++j) {
+    y.at.position[j] = y.at.position[j] + s * k.at.position[j];
+    y.at.velocity[j] = y.at.velocity[j] + s * k.at.velocity[j];
+  }
+  for (std::size_t i = 0; i < y.memory.size(); ++i) y.memory[i] = y.memory[i] + s * k.memory[i];
+}
+
+/// A step and its dense output: (1-s) from + s (to + (1-s)(first + s second)), s from 0 to 1.
+template <class Y>
+struct Step {
+  Y from, to, first, second, error;
+  template <class S, class F>
+  static F blend(const S& s, const F& a, const F& b, const F& c, const F& d) {
+    const S u = 1.0 - s;
+    return u * a + s * (b + u * (c + s * d));
+  }
+  /// The state at the share `s` of the step; its time is left to the caller.
+  template <class S>
+  Y at(const S& s) const {
+    Y y;
+    for (std::size_t j = 0; j < y.at.position.size(); ++j) {
+      y.at.position[j] = blend(s, from.at.position[j], to.at.position[j], first.at.position[j], second.at.position[j]);
+      y.at.velocity[j] = blend(s, from.at.velocity[j], to.at.velocity[j], first.at.velocity[j], second.at.velocity[j]);
+    }
+    for (std::size_t i = 0; i < y.memory.size(); ++i)
+      y.memory[i] = blend(s, from.memory[i], to.memory[i], first.memory[i], second.memory[i]);
+    return y;
+  }
+};
+
+/// The increment of stage `i`: (alpha - J) k_i = f(Y_i) + sum C_ij k_j / h + h d_i f_t.
+template <class Tableau, int i, class System, class T, class Y, class Inputs>
+TENDONLAB_INLINE Y stage(const System& system, const Y& y, const Frame<System, T>& frame, const Inputs& in, Plain<T> h,
+                         const Arrowhead<System, T>& blocks, const Elimination<System, T>& solver, const Y* k) {
+  constexpr int n = System::dof, nz = memories<System>;
+  Y at = y, r{};
+  unroll<i>([&](auto j) __attribute__((always_inline)) {
+    if constexpr (Tableau::A[i][j] != 0) add(at, Tableau::A[i][j], k[j]);
+    if constexpr (Tableau::C[i][j] != 0) add(r, Tableau::C[i][j], k[j]);
+  });
+  Rate<T, n, nz> f = blocks.rate;
+  if constexpr (i > 0) {
+    at.at.time = y.at.time + Tableau::c[i] * h;
+    f = rate(system, at, frame, in);
+  }
+  const Plain<T> per_h = 1.0 / h;
+  for (std::size_t j = 0; j < n; ++j) {
+    r.at.position[j] = r.at.position[j] * per_h + at.at.velocity[j];
+    r.at.velocity[j] = r.at.velocity[j] * per_h + f.acceleration[j];
+    if constexpr (Tableau::d[i] != 0)
+      r.at.velocity[j] = r.at.velocity[j] + (h * Tableau::d[i]) * blocks.acceleration_by[j][2 * n];
+  }
+  for (std::size_t m = 0; m < nz; ++m) {
+    r.memory[m] = r.memory[m] * per_h + f.memory[m];
+    if constexpr (Tableau::d[i] != 0) r.memory[m] = r.memory[m] + (h * Tableau::d[i]) * blocks.memory_by[m][2 * n];
+  }
+  return solver.solve(r);
+}
+
+template <class Tableau, class System, class T, class Inputs>
+[[gnu::flatten]] Step<StateOf<System, T>> advance(const System& system, const StateOf<System, T>& y,
+                                                  const Frame<System, T>& frame, const Inputs& in, Plain<T> h) {
+  using Y = StateOf<System, T>;
+  const auto blocks = linearise(system, y, frame, in);
+  const Elimination<System, T> solver(blocks, h, Tableau::gamma);
+  Y k[Tableau::stages];
+  unroll<Tableau::stages>([&](auto i) __attribute__((always_inline)) {
+    k[i] = stage<Tableau, i, System, T>(system, y, frame, in, h, blocks, solver, k);
+  });
+  Step<Y> s{y, y, {}, {}, k[Tableau::stages - 1]};
+  unroll<Tableau::stages>([&](auto j) __attribute__((always_inline)) {  // stiffly accurate: the last row of A, then the error
+    constexpr double b = j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0;
+    add(s.to, b, k[j]);
+    if constexpr (Tableau::D[0][j] != 0) add(s.first, Tableau::D[0][j], k[j]);
+    if constexpr (Tableau::D[1][j] != 0) add(s.second, Tableau::D[1][j], k[j]);
+  });
+  s.to.at.time = y.at.time + h;
+  return s;
+}
+}  // namespace tendonlab::integrate

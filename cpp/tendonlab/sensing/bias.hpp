@@ -1,0 +1,27 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::sensing {
+/// Sensor bias: a constant added to the reading.
+///
+///   y -> y + y_0                                                          (S2 sec. 4)
+///
+/// y: reading, unit of its signal. y_0 = 0 switches it off.
+template <class T>
+struct Bias {
+  static constexpr std::string_view name = "bias", source = "S2 sec. 4", equation = "y + y_0",
+                                    summary = "sensor bias: a constant added to the reading";
+  static constexpr unsigned roles = 0, sees = sees_nothing;
+  T added;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&Bias::added, "bias", Dimension::output, Purpose::amplitude, 0.05, -inf, inf,
+                                "constant added to the reading")};
+  }
+  T lateness() const { return T(0.0); }
+  template <class S>
+  S apply(const S& signal) const {
+    return signal + added;
+  }
+};
+}  // namespace tendonlab::sensing

@@ -1,0 +1,27 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::sensing {
+/// Sensor delay: the reading is old.
+///
+///   y(t) -> y(t - d)                                                      (S2 sec. 4)
+///
+/// d: delay, s. Whoever holds the signal's past applies it. d = 0 switches it off.
+template <class T>
+struct Delay {
+  static constexpr std::string_view name = "delay", source = "S2 sec. 4", equation = "y(t - d)",
+                                    summary = "sensor delay: the reading is old";
+  static constexpr unsigned roles = 0, sees = sees_nothing;
+  T late;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&Delay::late, "delay", Dimension::time, Purpose::amplitude, 0.005, 0.0, inf,
+                                "age of the reading")};
+  }
+  T lateness() const { return late; }
+  template <class S>
+  S apply(const S& signal) const {
+    return signal;
+  }
+};
+}  // namespace tendonlab::sensing

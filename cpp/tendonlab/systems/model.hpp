@@ -1,0 +1,56 @@
+#pragma once
+// A system by name: everything above this line of the library sees parameters, effects, outputs, and no template.
+#include <memory>
+
+#include "tendonlab/core/parameter.hpp"
+#include "tendonlab/integrate/experiment.hpp"
+
+namespace tendonlab {
+struct ParameterInfo {
+  std::string name, element, effect, own;
+  Dimension dimension;
+  Purpose purpose;
+  double typical, lower, upper;
+  std::string meaning;
+};
+struct EffectInfo {
+  std::string name, element, effect, equation, source, summary;
+  std::vector<std::string> parameters;
+  unsigned roles;
+  bool structural;
+};
+struct SignalInfo {
+  std::string name, meaning;
+  Dimension dimension;
+  bool required;
+  int axis;
+};
+struct SystemInfo {
+  std::string kind, equation;
+  int dof;
+  std::vector<SignalInfo> inputs, outputs;
+  std::vector<ParameterInfo> parameters;
+  std::vector<EffectInfo> effects;
+  std::vector<std::string> elements, ports, nominal;
+};
+
+/// A system with numbers in it: one value a parameter, one flag an effect, in the order of `SystemInfo`.
+struct Configuration {
+  std::vector<double> values;
+  std::vector<bool> active;
+};
+
+class Model {
+ public:
+  virtual ~Model() = default;
+  virtual const SystemInfo& info() const = 0;
+  /// Simulates `experiment`; the gradient has a column a seed. Throws NumericalError where the integration fails.
+  virtual integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
+                                         const std::vector<integrate::Seed>& seeds,
+                                         const integrate::Settings& settings) const = 0;
+};
+/// All systems of the library, in the order in which they are listed.
+const std::vector<std::unique_ptr<Model>>& models();
+/// The system of that kind; throws ParameterError, naming those there are.
+const Model& model(const std::string& kind);
+}  // namespace tendonlab

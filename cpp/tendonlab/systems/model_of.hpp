@@ -1,0 +1,113 @@
+#pragma once
+// The one place where a system template becomes a Model: its description and its simulations in every scalar.
+#include "tendonlab/integrate/recorder.hpp"
+#include "tendonlab/systems/assemble.hpp"
+#include "tendonlab/systems/model.hpp"
+
+namespace tendonlab {
+template <template <class> class Of>
+SystemInfo describe() {
+  using System = Of<double>;
+  System system{};
+  SystemInfo info{std::string(System::name), std::string(System::equation), System::dof, {}, {}, {}, {}, {}, {}, {}};
+  for (const auto& s : System::inputs)
+    info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1});
+  for (const auto& s : System::outputs)
+    info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis});
+  for (const auto& port : System::ports) info.ports.emplace_back(port.element);
+  for (const auto& name : System::nominal) info.nominal.emplace_back(name);
+  systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) { info.elements.push_back(element); });
+  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
+    info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
+                               std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
+                               std::string(p.meaning)});
+  });
+  systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
+    using Law = std::decay_t<decltype(law)>;
+    const std::string name = element + ":" + std::string(Law::name);
+    EffectInfo effect{name, element, std::string(Law::name), std::string(Law::equation), std::string(Law::source),
+                      std::string(Law::summary), {}, Law::roles, systems::is_structural<System>(name)};
+    for_each_parameter<Law>([&](const auto& p) {
+      effect.parameters.push_back(systems::parameter_name<System>(element, Law::name, p.name));
+    });
+    info.effects.push_back(effect);
+  });
+  return info;
+}
+
+/// The system with numbers in it; `columns` are seeded into the derivatives of `T`.
+template <class System, class T>
+System assemble(const Configuration& with, const std::vector<integrate::Seed>& seeds, std::size_t first, std::size_t count) {
+  System system{};
+  std::size_t index = 0;
+  systems::for_each_parameter_of(system, [&](const std::string&, std::string_view, const auto&, auto& field) {
+    T value(with.values[index]);
+    if constexpr (!std::is_same_v<T, double>)
+      for (std::size_t k = 0; k < count; ++k)
+        if (seeds[first + k].of == integrate::Seed::Of::parameter && static_cast<std::size_t>(seeds[first + k].index) == index)
+          value.seed(static_cast<int>(k), 1.0);
+    field = value;
+    ++index;
+  });
+  std::size_t effect = 0;
+  systems::for_each_law(system, [&](const std::string&, auto&, unsigned& active, unsigned bit) {
+    if (with.active[effect++]) active |= bit;
+  });
+  system.prepare();
+  return system;
+}
+
+template <template <class> class Of>
+class ModelOf final : public Model {
+  using Seeds = std::vector<integrate::Seed>;
+
+ public:
+  const SystemInfo& info() const override { return description; }
+  integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
+                                 const integrate::Settings& settings) const override {
+    integrate::Trajectory out;
+    out.channels = static_cast<int>(Of<double>::outputs.size());
+    out.samples = static_cast<int>(experiment.time.size());
+    out.width = static_cast<int>(seeds.size());
+    const auto cells = static_cast<std::size_t>(out.channels) * experiment.time.size();
+    out.value.assign(cells, 0.0);
+    out.gradient.assign(cells * seeds.size(), 0.0);
+    if (settings.ports) out.port.assign(Of<double>::ports.size() * 4 * experiment.time.size(), 0.0);
+    if (seeds.empty()) run<double>(with, experiment, seeds, 0, 0, settings, out);
+    for (std::size_t first = 0; first < seeds.size();) {
+      const std::size_t left = seeds.size() - first;
+      if (left <= 8)
+        run<Gradient<1>>(with, experiment, seeds, first, left, settings, out), first += left;
+      else
+        run<Gradient<2>>(with, experiment, seeds, first, std::min<std::size_t>(left, 16), settings, out), first += 16;
+    }
+    return out;
+  }
+
+ private:
+  template <class T>
+  static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
+                  std::size_t first, std::size_t count, const integrate::Settings& settings, integrate::Trajectory& out) {
+    using System = Of<T>;
+    const System system = assemble<System, T>(with, seeds, first, count);
+    const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
+    integrate::Simulation<System, T> simulation(
+        system, experiment, settings,
+        integrate::Drive<T>(experiment, system.actuation.delay(), sensor.delay(), sensor.bias()));
+    for (std::size_t j = 0; j < static_cast<std::size_t>(System::dof); ++j) {
+      simulation.y.at.position[j] = T(experiment.position[j]);
+      simulation.y.at.velocity[j] = T(experiment.velocity[j]);
+    }
+    if constexpr (!std::is_same_v<T, double>)
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto& seed = seeds[first + k];
+        auto& of = seed.of == integrate::Seed::Of::position ? simulation.y.at.position : simulation.y.at.velocity;
+        if (seed.of != integrate::Seed::Of::parameter) of[static_cast<std::size_t>(seed.index)].seed(static_cast<int>(k), 1.0);
+      }
+    simulation.run(out, integrate::Recorder<System, T>(system, experiment, out, static_cast<int>(first),
+                                                       static_cast<int>(count), settings.ports && first == 0));
+  }
+
+  const SystemInfo description = describe<Of>();
+};
+}  // namespace tendonlab

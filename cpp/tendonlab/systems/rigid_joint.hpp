@@ -1,0 +1,59 @@
+#pragma once
+#include "tendonlab/systems/system.hpp"
+
+namespace tendonlab::systems {
+/// A joint (or slide) on a rigid transmission:  J q'' = K_t u - friction - g_tau sin q + known.
+template <class T>
+struct RigidJoint {
+  static constexpr std::string_view name = "rigid_joint",
+                                    equation = "J q'' = K_t u - friction - g_tau sin(q) + known_torque";
+  static constexpr int dof = 1, directions = 1, sides = 0;
+  static constexpr std::array<Port, 1> ports{{{"joint", 0}}};
+  static constexpr bool joined[1][1] = {{true}};
+  static constexpr std::array<Input, 2> inputs{
+      {{"motor_torque", "command to the actuator", Dimension::command, true},
+       {"known_torque", "effort known to act on the joint", Dimension::effort, false}}};
+  static constexpr std::array<Output, 2> outputs{
+      {{"joint_angle", "position of the joint", Dimension::displacement, 0},
+       {"joint_velocity", "velocity of the joint", Dimension::flow, -1}}};
+  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
+  static constexpr bool plain_names = true;  ///< parameters of the nominal effects carry no element in front
+
+  std::tuple<Slot<T, friction::All>> slot;
+  Chain<T, actuation::All> actuation;
+  std::array<Chain<T, sensing::All>, 2> sensor;
+  T inertia, gravity_torque, torque_constant;
+  std::array<T, dof> inverse_inertia;
+  T lever[1][dof];
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&RigidJoint::inertia, "inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12,
+                                inf, "inertia of everything that moves"),
+                      parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
+                                0.0, -inf, inf, "gravity torque at 90 degrees"),
+                      parameter(&RigidJoint::torque_constant, "torque_constant", Dimension::effort_per_command,
+                                Purpose::structure, 1.0, -inf, inf, "effort per unit of the command; known unless sd says otherwise")};
+  }
+  void prepare() {
+    inverse_inertia[0] = 1.0 / inertia;
+    lever[0][0] = T(1.0);
+  }
+  template <class S, class Modes, class Inputs>
+  Coupling<S, 1, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
+    Coupling<S, 1, 1> c;
+    const S motor = actuation.apply(S(torque_constant * in.command(at)));
+    const S gravity = gravity_torque * sin(at.position[0]), known = in.template input<1>(at.time);
+    c.port[0].velocity = at.velocity[0];
+    c.port[0].position = at.position[0];
+    c.port[0].load = 0.5 * (motor + gravity - known);  // mean of what the motor delivers and the load takes
+    c.port[0].direction = mode[0];
+    c.applied[0] = motor - gravity + known;
+    return c;
+  }
+  template <class S, class Force>
+  std::array<S, 2> observe(const Motion<S, 1>& at, const Force&) const {
+    return {at.position[0], at.velocity[0]};
+  }
+};
+}  // namespace tendonlab::systems
