@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any
-from urllib.error import URLError
 from urllib.parse import urlparse
 from urllib.request import urlopen
 
@@ -76,10 +75,10 @@ def prepare(
 ) -> Path:
     """Make the dataset folder `out` (./<name> unless given) of the public recording `name`; returns that folder.
 
-    Its files are looked for in `source`, in the folder that TENDONLAB_DATA names, in the cache, and then downloaded from
-    their public home, or from `registry` (or TENDONLAB_REGISTRY), an address that holds them as <name>/<file>. Every
-    file is checked against its sha256. Running it again gives the same folder. Raises DatasetError: unknown name, files
-    not found or changed, or an `out` whose dataset.toml somebody edited."""
+    Its files are looked for in `source`, in the folder that TENDONLAB_DATA names, in the cache, and then downloaded
+    from their public home, or from `registry` (or TENDONLAB_REGISTRY), an address that holds them as <name>/<file>.
+    Every file is checked against its sha256. Running it again gives the same folder. Raises DatasetError: unknown name,
+    files not found or changed, or an `out` whose dataset.toml somebody edited."""
     dataset = _ALL.get(name)
     if dataset is None:
         raise DatasetError(f"{name!r} is no public dataset; {expected_one_of(name, _ALL)}")
@@ -118,14 +117,11 @@ def _verified(path: Path, file: PublicFile) -> Path:
 def _download(
     dataset: PublicDataset, file: PublicFile, *, searched: list[Path], registry: str | None, progress: bool
 ) -> Path:
+    import pooch
+
     base = registry or os.environ.get(REGISTRY_VARIABLE)
     address = f"{base.rstrip('/')}/{dataset.name}/{file.name}" if base else f"{dataset.home}/{file.name}"
     looked = ", ".join(str(place) for place in searched) or f"no folder (neither source nor {SOURCE_VARIABLE} is given)"
-    try:
-        import pooch
-    except ImportError as error:
-        problem = f"not found in {looked}, and a download needs pooch"
-        raise DatasetError(f"{file.name}: {problem}; pip install pooch, or give source=") from error
     pooch.get_logger().setLevel("WARNING")
     downloader = _copy_file if urlparse(address).scheme == "file" else pooch.HTTPDownloader(progressbar=progress)
     cache = Path(pooch.os_cache("tendonlab")) / dataset.name
@@ -133,7 +129,7 @@ def _download(
         found: str = pooch.retrieve(
             address, known_hash=f"sha256:{file.sha256}", fname=file.name, path=cache, downloader=downloader
         )
-    except (OSError, URLError, ValueError) as error:  # requests' own errors are OSErrors
+    except (OSError, ValueError) as error:  # requests' own errors are OSErrors
         problem = f"not found in {looked}, nor in the cache {cache}, and the download of {address} failed: {error}"
         raise DatasetError(f"{file.name}: {problem}") from error
     return Path(found)

@@ -13,15 +13,15 @@ from tendonlab.errors import DatasetError
 RECORDS = {"DATA_EMPS.mat": ("estimation", "train"), "DATA_EMPS_PULSES.mat": ("pulses", "test")}
 GAINS = ("kp", "kv", "gtau")
 
-# The nominal values are round: the ones that the benchmark's authors identified would leave nothing to find. The rail is
-# level, and the force is the drive's gain times its voltage.
+# The nominal values are round: the ones that the benchmark's authors identified would leave nothing to find. The rail
+# is level, and the force is the drive's gain times its voltage.
 TEMPLATE = '''\
 format = "tendonlab-dataset/1"
 name = "emps"
 description = """
-EMPS, the electro-mechanical positioning system: DC motor, ball screw and carriage on a rail under cascaded position and
-velocity control; 1 kHz, 24.84 s a record. Experiment "pulses" repeats the motion of "estimation" with disturbance pulses
-of 5 V added to the controller's output; motor_torque is the total drive voltage and contains them already.
+EMPS, the electro-mechanical positioning system: DC motor, ball screw and carriage on a rail under cascaded position
+and velocity control; 1 kHz, 24.84 s a record. Experiment "pulses" repeats the motion of "estimation" with disturbance
+pulses of 5 V added to the controller's output; motor_torque is the total drive voltage and contains them already.
 Licence: open benchmark; the files are copies in the Apache-2.0 repository forgi86/sysid-neural-continuous on GitHub.
 Citation: A. Janot, M. Gautier, M. Brunot, "Data set and reference models of EMPS", Workshop on Nonlinear System
 Identification Benchmarks, Eindhoven, 2019.

@@ -23,6 +23,7 @@ def load(path: str | PathLike[str]) -> Dataset:
     folder = Path(path)
     folder = folder.parent if folder.name == FILE else folder
     top = read_toml(folder)
+    name, description = top.text("name"), top.text("description", "")
     info, axis = read_system(top)
     nominal_effects = read_nominal_effects(top, info)
     parameters = read_parameters(top, info, nominal_effects=nominal_effects)
@@ -47,8 +48,8 @@ def load(path: str | PathLike[str]) -> Dataset:
         *_split_notes(experiments, given=split_is_given(top)),
     ]
     return Dataset(
-        name=top.text("name"),
-        description=top.text("description", ""),
+        name=name,
+        description=description,
         kind=info.kind,
         axis=axis,
         nominal_effects=nominal_effects,

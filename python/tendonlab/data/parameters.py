@@ -59,7 +59,7 @@ def missing_values(
 
 
 def find_parameter(table: Table, name: str, *, info: SystemInfo, nominal_effects: tuple[str, ...]) -> Parameter:
-    """The parameter that the key `name` of `table` means. Raises DatasetError where there is none or it is not nominal."""
+    """The parameter that the key `name` of `table` means. Raises DatasetError where it is unknown or not nominal."""
     usable = [p.name for p in info.parameters if _is_nominal(p, info, nominal_effects)]
     parameter = next((p for p in info.parameters if p.name == name), None)
     if parameter is None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import importlib
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +17,7 @@ from tendonlab.errors import DatasetError
 if TYPE_CHECKING:
     import pandas as pd
 
-_MISSING = ["", "nan", "NaN", "NAN"]
+_HDF5 = b"\x89HDF\r\n\x1a\n"  # how such a file begins
 Reader = Callable[[Path, Sequence[str]], dict[str, np.ndarray]]
 
 
@@ -75,45 +74,49 @@ def _read_csv(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
     import pandas as pd
 
     try:
-        header = _csv_header(path)
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", pd.errors.ParserWarning)  # pandas would drop a surplus field of every row
-            # Blank lines stay, so that a row in a message is the line of the file.
-            frame = pd.read_csv(
-                path,
-                encoding="utf-8-sig",
-                header=None,
-                names=list(range(len(header))),
-                skiprows=1,
-                index_col=False,
-                skip_blank_lines=False,
-                skipinitialspace=True,
-                keep_default_na=False,
-                na_values=_MISSING,
-                float_precision="round_trip",
-                low_memory=False,
-            )
+        header, num_rows = _csv_shape(path)
+        for column in columns:
+            if header.count(column) > 1:
+                raise DatasetError(f"{path.name}, row 1, column {column!r}: stands there {header.count(column)} times")
+        # Blank lines stay, so that a row in a message is the line of the file.
+        frame = pd.read_csv(
+            path,
+            encoding="utf-8-sig",
+            header=None,
+            names=list(range(len(header))),
+            skiprows=1,
+            nrows=num_rows,
+            skip_blank_lines=False,
+            skipinitialspace=True,
+            keep_default_na=False,
+            na_values=["", "nan", "NaN", "NAN"],
+            low_memory=False,
+        )
     except UnicodeDecodeError as error:
         raise DatasetError(f"{path.name}: byte {error.start} is not UTF-8; expected a UTF-8 file") from error
     except pd.errors.EmptyDataError:
         frame = pd.DataFrame(columns=range(len(header)), dtype=float)
-    except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
-        raise DatasetError(f"{path.name}: {error}; expected {len(header)} values in a row, as in the header") from error
-    frame = frame.loc[: frame.last_valid_index()] if frame.notna().to_numpy().any() else frame.iloc[:0]
-    for column in columns:
-        if header.count(column) > 1:
-            raise DatasetError(f"{path.name}, row 1, column {column!r}: stands there {header.count(column)} times")
+    except (pd.errors.ParserError, csv.Error) as error:
+        raise DatasetError(f"{path.name}: {error}; expected comma-separated values") from error
     frame.columns = pd.Index(header)
     numeric = {name: _csv_numbers(path.name, name, frame[name]) for name in columns if name in header}
     return _pick(path.name, {**dict.fromkeys(header), **numeric}, columns)
 
 
-def _csv_header(path: Path) -> list[str]:
-    with path.open(encoding="utf-8-sig", newline="") as lines:
-        header = next(csv.reader(lines, skipinitialspace=True), [])
-    if not header:
-        raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
-    return [name.strip() for name in header]
+def _csv_shape(path: Path) -> tuple[list[str], int]:
+    """The header and the number of rows below it, blank lines at the end left out; every row has a field a column."""
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        lines = csv.reader(file, skipinitialspace=True)
+        header = next(lines, [])
+        if not header:
+            raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
+        num_rows = 0
+        for row, line in enumerate(lines, start=1):
+            num_rows = row if line else num_rows
+            if line and len(line) != len(header):
+                problem = f"{len(line)} values; expected {len(header)} as in the header"
+                raise DatasetError(f"{path.name}, row {row + 1}: {problem}")
+    return [name.strip() for name in header], num_rows
 
 
 def _csv_numbers(file: str, column: str, values: pd.Series[Any]) -> np.ndarray:
@@ -134,7 +137,10 @@ def _read_parquet(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
     import pandas as pd
 
     _require(path, "pyarrow")
-    frame = pd.read_parquet(path)
+    try:
+        frame = pd.read_parquet(path)
+    except (OSError, ValueError) as error:  # pyarrow's own errors are both
+        raise DatasetError(f"{path.name}: {error}; expected a Parquet file") from error
     if frame.index.name is not None:  # a time index that was written with its name is a column like the others
         frame = frame.reset_index()
     return _pick(path.name, {str(name): frame[name].to_numpy() for name in frame.columns}, columns)
@@ -144,11 +150,13 @@ def _read_mat(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
+    with path.open("rb") as file:
+        start = file.read(520)
+    if _HDF5 in (start[:8], start[512:]):  # version 7.3 is HDF5 behind 512 bytes of its own
+        return _read_hdf5(path, columns)
     try:
         variables = loadmat(path, simplify_cells=True)
-    except NotImplementedError:  # version 7.3 is HDF5
-        return _read_hdf5(path, columns)
-    except (MatReadError, ValueError, TypeError) as error:
+    except (MatReadError, ValueError, TypeError, OSError) as error:
         raise DatasetError(f"{path.name}: {error}; expected a MAT file") from error
     return _pick(path.name, _flatten(variables, ""), columns)
 
@@ -201,7 +209,9 @@ def _require(path: Path, package: str) -> Any:
     try:
         return importlib.import_module(package)
     except ImportError as error:
-        raise DatasetError(f"{path.name}: reading {path.suffix} needs {package}; pip install {package}") from error
+        raise DatasetError(
+            f"{path.name}: reading {path.suffix} needs {package}; pip install tendonlab[files]"
+        ) from error
 
 
 _READERS: dict[str, Reader] = {

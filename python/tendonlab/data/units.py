@@ -35,7 +35,7 @@ def parse(unit: str) -> pint.Unit:
 
 
 def same_dimension(unit: str, other: str) -> bool:
-    """Whether one converts into the other. Hertz, counts and percent are no angle, though to pint angles are numbers."""
+    """Whether one converts into the other. Hertz, counts and percent are no angle, though pint sees only numbers."""
     left, right = parse(unit), parse(other)
     if left.dimensionality != right.dimensionality:
         return False
