@@ -115,6 +115,12 @@ void bind_systems(py::module_& module) {
     return names;
   }, "Names of all systems.");
   module.def("system_info", &system_info, py::arg("kind"), "Everything a system states about itself, as plain types.");
+  module.def("rigid_motion", [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active) {
+    const Model& of = model(kind);
+    const RigidMotion r = of.rigid_motion(make_configuration(of, values, active));
+    return py::make_tuple(r.shape, r.inertia, r.effort_per_command);
+  }, py::arg("kind"), py::arg("values"), py::arg("active"),
+  "Motion of each degree of freedom with the first if nothing stretched, inertia and effort per unit of command.");
   py::class_<Signal>(module, "Signal", "A piecewise cubic in time, from knots (m,) and coefficients (m, 4) about each knot.")
       .def(py::init<>())
       .def(py::init(&make_signal), py::arg("knots"), py::arg("coefficients"), py::arg("holds"));

@@ -173,19 +173,25 @@ class Simulation {
   }
   void turn(int m) {
     std::array<bool, num_modes> turning{};
-    const auto i = static_cast<std::size_t>(m);
     if (m == saturation) {
       const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time));
       drive.side = drive.side == 0.0 ? std::copysign(1.0, u) : 0.0;
-    } else if (m >= System::directions) {
-      frame.mode[i] = frame.mode[i] == 0.0 ? (plain(contact.stretch(m, y.at)) > 0 ? 1.0 : -1.0) : 0.0;
-    } else if (frame.mode[i] == 0.0) {
+    } else if (m < System::directions) {
+      turn_direction(m, turning);
+    } else if constexpr (System::sides > 0) {
+      auto& side = frame.mode[static_cast<std::size_t>(m)];
+      side = side == 0.0 ? (plain(contact.stretch(m, y.at)) > 0 ? 1.0 : -1.0) : 0.0;
+    }
+    contact.settle(y, frame, turning, drive);
+  }
+  void turn_direction(int m, std::array<bool, num_modes>& turning) {
+    const auto i = static_cast<std::size_t>(m);
+    if (frame.mode[i] == 0.0) {
       frame.mode[i] = contact.holding(y, frame, drive)[i] < 0 ? -1.0 : 1.0;
     } else {
       contact.rest(m, y.at);
       turning[i] = true;
     }
-    contact.settle(y, frame, turning, drive);
   }
   double limit_side() const {
     const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time)), limit = drive.from.loop.limit;

@@ -1,6 +1,8 @@
 #pragma once
 // A system by name: everything above this line of the library sees parameters, effects, outputs, and no template.
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "tendonlab/core/parameter.hpp"
 #include "tendonlab/integrate/experiment.hpp"
@@ -40,10 +42,18 @@ struct Configuration {
   std::vector<bool> active;
 };
 
+/// The system as if nothing stretched: how far each degree of freedom moves with the first, the inertia that the
+/// command then moves, per unit of command, and the effort on the first degree of freedom per unit of command.
+struct RigidMotion {
+  std::vector<double> shape;
+  double inertia, effort_per_command;
+};
+
 class Model {
  public:
   virtual ~Model() = default;
   virtual const SystemInfo& info() const = 0;
+  virtual RigidMotion rigid_motion(const Configuration& with) const = 0;
   /// Simulates `experiment`; the gradient has a column a seed. Throws NumericalError where the integration fails.
   virtual integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
                                          const std::vector<integrate::Seed>& seeds,

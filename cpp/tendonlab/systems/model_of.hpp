@@ -63,6 +63,14 @@ class ModelOf final : public Model {
 
  public:
   const SystemInfo& info() const override { return description; }
+  RigidMotion rigid_motion(const Configuration& with) const override {
+    const auto system = assemble<Of<double>, double>(with, {}, 0, 0);
+    const auto shape = system.rigid_shape();
+    RigidMotion rigid{{shape.begin(), shape.end()}, 0.0, system.effort_per_command()};
+    for (std::size_t j = 0; j < shape.size(); ++j) rigid.inertia += square(shape[j]) / system.inverse_inertia[j];
+    rigid.inertia /= rigid.effort_per_command;
+    return rigid;
+  }
   integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
                                  const integrate::Settings& settings) const override {
     integrate::Trajectory out;

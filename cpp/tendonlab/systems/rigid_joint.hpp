@@ -39,6 +39,8 @@ struct RigidJoint {
     inverse_inertia[0] = 1.0 / inertia;
     lever[0][0] = T(1.0);
   }
+  std::array<T, dof> rigid_shape() const { return {T(1.0)}; }
+  T effort_per_command() const { return torque_constant; }
   template <class S, class Modes, class Inputs>
   Coupling<S, 1, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
     Coupling<S, 1, 1> c;

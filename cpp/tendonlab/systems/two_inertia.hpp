@@ -52,6 +52,8 @@ struct TwoInertia {
     lever[cable][0] = 1.0 / gear_ratio;
     lever[cable][1] = T(-1.0);
   }
+  std::array<T, dof> rigid_shape() const { return {T(1.0), lever[cable][0]}; }
+  T effort_per_command() const { return T(1.0); }
   template <class S, class Modes, class Inputs>
   Coupling<S, 4, 2> couple(const Motion<S, 2>& at, const Modes& mode, const Inputs& in) const {
     Coupling<S, 4, 2> c;

@@ -1,0 +1,174 @@
+"""What systems, effects and parameters there are: the tables of the compiled core, as plain Python."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from functools import cache
+from typing import TypeVar
+
+from tendonlab import _core
+from tendonlab.errors import ParameterError
+
+UNITS = {
+    "rotary": {
+        "effort": "N*m", "flow": "rad/s", "displacement": "rad", "inertia": "kg*m^2", "damping": "N*m*s/rad",
+        "stiffness": "N*m/rad", "effort_per_command": "N*m",
+    },
+    "linear": {
+        "effort": "N", "flow": "m/s", "displacement": "m", "inertia": "kg", "damping": "N*s/m",
+        "stiffness": "N/m", "effort_per_command": "N",
+    },
+}  # fmt: skip
+PLAIN_UNITS = {"ratio": "1", "time": "s"}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A row of a law's or system's table. `typical` is in units of the rig's own scale of that dimension (its rms
+    effort, speed, travel), absolute for ratios and times. `purpose`: "structure", "amplitude", "share" or "shape"."""
+
+    name: str
+    element: str | None
+    effect: str | None
+    own: str
+    dimension: str
+    purpose: str
+    typical: float
+    lower: float
+    upper: float
+    meaning: str
+
+    @property
+    def amplitude(self) -> bool:
+        """Does the effect vanish where this is 0?"""
+        return self.purpose in ("amplitude", "share")
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A law in a place, "joint:stribeck". `structural` ones are part of the system and always on."""
+
+    name: str
+    element: str
+    effect: str
+    equation: str
+    source: str
+    summary: str
+    parameters: tuple[str, ...]
+    structural: bool
+    roles: int
+
+
+Named = TypeVar("Named", Parameter, Effect)
+
+
+@dataclass(frozen=True)
+class Signal:
+    """An input or output; `axis` is the degree of freedom whose position it is, None for anything else."""
+
+    name: str
+    dimension: str
+    required: bool
+    hold: bool
+    meaning: str
+    axis: int | None
+
+
+@dataclass(frozen=True)
+class SystemInfo:
+    """Everything a system states about itself."""
+
+    kind: str
+    equation: str
+    dof: int
+    inputs: tuple[Signal, ...]
+    outputs: tuple[Signal, ...]
+    parameters: tuple[Parameter, ...]
+    effects: tuple[Effect, ...]
+    elements: tuple[str, ...]
+    ports: tuple[str, ...]
+    default_nominal_effects: tuple[str, ...]
+
+    def parameter(self, name: str) -> Parameter:
+        """The row of that name; ParameterError, with the nearest name, where there is none."""
+        return _named(self.parameters, name, f"parameter of {self.kind}")
+
+    def effect(self, name: str) -> Effect:
+        """The effect of that name; ParameterError, with the nearest name, where there is none."""
+        return _named(self.effects, name, f"effect of {self.kind}")
+
+
+def kinds() -> tuple[str, ...]:
+    """Names of all systems."""
+    return tuple(_core.kinds())
+
+
+@cache
+def system_info(kind: str) -> SystemInfo:
+    """The tables of the system `kind`; ParameterError names the nearest kind where there is none."""
+    if kind not in kinds():
+        raise ParameterError(f"system kind = {kind!r}: {nearest(kind, kinds())}")
+    raw = _core.system_info(kind)
+    return SystemInfo(
+        kind=raw["kind"],
+        equation=raw["equation"],
+        dof=raw["dof"],
+        inputs=tuple(_signal(s) for s in raw["inputs"]),
+        outputs=tuple(_signal(s) for s in raw["outputs"]),
+        parameters=tuple(
+            Parameter(**{**p, "element": p["element"] or None, "effect": p["effect"] or None})
+            for p in raw["parameters"]
+        ),
+        effects=tuple(Effect(**{**e, "parameters": tuple(e["parameters"])}) for e in raw["effects"]),
+        elements=tuple(raw["elements"]),
+        ports=tuple(raw["ports"]),
+        default_nominal_effects=tuple(raw["nominal"]),
+    )
+
+
+def unit(dimension: str, axis: str) -> str:
+    """Unit of a dimension on a "rotary" or "linear" axis, e.g. unit("effort", "linear") = "N"."""
+    if axis not in UNITS:
+        raise ParameterError(f"axis = {axis!r}: expected one of {', '.join(UNITS)}")
+    if dimension == "command":
+        dimension = "effort"
+    found = PLAIN_UNITS.get(dimension) or UNITS[axis].get(dimension)
+    if found is None:
+        raise ParameterError(f"dimension = {dimension!r}: expected one of {', '.join([*UNITS[axis], *PLAIN_UNITS])}")
+    return found
+
+
+def parameter_unit(info: SystemInfo, parameter: Parameter, axis: str) -> str:
+    """Unit of a parameter; that of a sensor's bias is its signal's."""
+    if parameter.dimension != "output":
+        return unit(parameter.dimension, axis)
+    signal = (parameter.element or "").removeprefix("sensor.")
+    return unit(next(s.dimension for s in info.outputs if s.name == signal), axis)
+
+
+def nearest(name: str, known: tuple[str, ...] | list[str]) -> str:
+    """ "expected one of …", with the nearest known name first where one is near."""
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return f"{hint}expected one of {', '.join(known)}"
+
+
+def _signal(raw: dict[str, object]) -> Signal:
+    axis = raw["axis"]
+    dimension = str(raw["dimension"])
+    return Signal(
+        name=str(raw["name"]),
+        dimension=dimension,
+        required=bool(raw["required"]),
+        hold=dimension in ("effort", "command"),  # what a drive holds between samples; angles and speeds move on
+        meaning=str(raw["meaning"]),
+        axis=axis if isinstance(axis, int) and axis >= 0 else None,
+    )
+
+
+def _named(items: tuple[Named, ...], name: str, what: str) -> Named:
+    for item in items:
+        if item.name == name:
+            return item
+    raise ParameterError(f"{name!r} is no {what}; {nearest(name, [i.name for i in items])}")
