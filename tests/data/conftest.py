@@ -80,9 +80,33 @@ GOOD: dict[str, Any] = {
 }
 
 
+TWO_INERTIA: dict[str, Any] = {
+    "kind": "two_inertia",
+    "parameters": {
+        "motor_inertia": {"value": 1e-4},
+        "joint_inertia": {"value": 0.02},
+        "gear_ratio": {"value": 10.0, "sd": 0},
+        "cable_stiffness": {"value": 100.0},
+        "cable_damping": {"value": 0.1},
+        "gravity_torque": {"value": 0.5},
+        "motor_viscous": {"value": 2e-4},
+        "motor_coulomb": {"value": 0.01},
+        "joint_viscous": {"value": 0.01},
+        "joint_coulomb": {"value": 0.05},
+    },
+}
+
+
 @pytest.fixture
 def draft() -> Draft:
     return Draft(copy.deepcopy(GOOD), {"one.csv": _frame(0.0), "two.csv": _frame(0.3)})
+
+
+@pytest.fixture
+def two_inertia(draft: Draft) -> Draft:
+    draft.toml["system"] = copy.deepcopy(TWO_INERTIA)
+    del draft.toml["signals"]["joint_velocity"]
+    return draft
 
 
 @pytest.fixture

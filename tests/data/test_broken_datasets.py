@@ -100,6 +100,12 @@ BROKEN: list[tuple[str, Mutation, str]] = [
         put("system.nominal_effects", ["joint:viscous"]),
         r"parameters.coulomb: belongs to 'joint:coulomb'",
     ),
+    ("no inertia", drop("system.parameters.inertia"), r"parameters.inertia: is missing; expected the nominal value"),
+    (
+        "nominal effect without its shape",
+        put("system.nominal_effects", ["joint:coulomb", "joint:viscous", "joint:stribeck"]),
+        r"parameters.joint_stribeck_velocity: is missing",
+    ),
     ("parameter no table", put("system.parameters.inertia", 0.02), r"inertia: 0.02: expected a table"),
     ("parameter without value", drop("system.parameters.inertia.value"), r"inertia.value: is missing"),
     ("parameter text", put("system.parameters.inertia.value", "big"), r"inertia.value: 'big': expected a number"),
@@ -205,13 +211,18 @@ def test_broken_dataset_is_an_error_that_says_where(draft, write, mutate, messag
     assert re.search(message, str(caught.value)), str(caught.value)
 
 
-def test_amperes_need_a_torque_constant(draft, write):
+def test_amperes_need_a_torque_constant(two_inertia, write):
     """two_inertia has none, so its motor_torque is a torque."""
-    draft.toml["system"] = {"kind": "two_inertia"}
-    draft.toml["signals"]["motor_torque"]["unit"] = "A"
-    del draft.toml["signals"]["joint_velocity"]
+    two_inertia.toml["signals"]["motor_torque"]["unit"] = "A"
     with pytest.raises(DatasetError, match=r"motor_torque.unit: unit 'A': two_inertia has no torque_constant"):
-        load(write(draft))
+        load(write(two_inertia))
+
+
+@pytest.mark.parametrize("name", ["motor_inertia", "gear_ratio", "cable_stiffness"])
+def test_a_system_needs_what_it_is_made_of(two_inertia, write, name):
+    del two_inertia.toml["system"]["parameters"][name]
+    with pytest.raises(DatasetError, match=rf"system.parameters.{name}: is missing; expected the nominal value"):
+        load(write(two_inertia))
 
 
 RAW_FILES = [

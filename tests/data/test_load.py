@@ -154,11 +154,9 @@ def test_values_known_in_one_experiment(draft, write):
     assert (one.add, one.initial) == ({"inertia": 0.01}, {"joint_velocity": 0.0})
 
 
-def test_initial_velocity_of_an_angle_is_a_state_of_two_inertia(draft, write):
-    draft.toml["system"] = {"kind": "two_inertia"}
-    del draft.toml["signals"]["joint_velocity"]
-    draft.toml["experiments"][0]["initial"] = {"motor_velocity": 0.5, "joint_velocity": 0.0}
-    assert load(write(draft))["one"].initial == {"motor_velocity": 0.5, "joint_velocity": 0.0}
+def test_initial_velocity_of_an_angle_is_a_state_of_two_inertia(two_inertia, write):
+    two_inertia.toml["experiments"][0]["initial"] = {"motor_velocity": 0.5, "joint_velocity": 0.0}
+    assert load(write(two_inertia))["one"].initial == {"motor_velocity": 0.5, "joint_velocity": 0.0}
 
 
 def test_further_nominal_effects_bring_their_parameters(draft, write):
@@ -167,14 +165,29 @@ def test_further_nominal_effects_bring_their_parameters(draft, write):
     assert load(write(draft)).parameters["actuation_offset"].value == -0.1
 
 
+def test_what_is_absent_is_zero_and_said(draft, write):
+    """Gravity that nobody mentions is not there; friction that nobody measured is there, of unknown size."""
+    parameters = draft.toml["system"]["parameters"]
+    for name in ("gravity_torque", "torque_constant", "coulomb"):
+        del parameters[name]
+    dataset = load(write(draft))
+    found = {name: (dataset.parameters[name].value, dataset.parameters[name].sd) for name in dataset.parameters}
+    assert (found["gravity_torque"], found["torque_constant"]) == ((0.0, 0.0), (1.0, 0.0))
+    assert found["coulomb"] == (0.0, None)
+    assert dataset.warnings == (
+        "gravity_torque: no nominal value given; 0 is assumed, exactly",
+        "coulomb: no nominal value given; 0 is assumed",
+    )
+    draft.toml["signals"]["motor_torque"]["unit"] = "V"
+    assert "torque_constant: no nominal value given; 1 is assumed, exactly" in load(write(draft)).warnings
+
+
 def test_doubts_are_said_in_warnings(draft, write):
-    del draft.toml["system"]["parameters"]["coulomb"]
     draft.toml["signals"]["joint_torque"] = {"column": "u"}
     draft.toml["signals"]["joint_angel"] = {"column": "q"}
     for experiment in draft.toml["experiments"]:
         experiment["split"] = "train"
     text = "\n".join(load(write(draft)).warnings)
-    assert "coulomb: no nominal value given" in text
     assert "'joint_angel' is unknown to rigid_joint and kept as a covariate; 'joint_angle' has nearly that name" in text
     assert "no experiment is held out" in text
 

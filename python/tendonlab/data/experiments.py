@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from tendonlab.catalog import SystemInfo
 
+from tendonlab.catalog import SystemInfo
 from tendonlab.data.dataset import Experiment, NominalParameter, SignalSpec
 from tendonlab.data.names import expected_one_of
 from tendonlab.data.parameters import find_parameter, require_within
@@ -107,17 +107,16 @@ def _read_experiment(table: Table, split: str, context: Context) -> Experiment:
 
 def _check_values(table: Table, values: Mapping[str, float], context: Context) -> None:
     for name, value in values.items():
-        own = find_parameter(table, name, info=context.info, nominal_effects=context.nominal_effects)
-        given = context.parameters.get(name, NominalParameter(own.typical, lower=own.lower, upper=own.upper))
+        find_parameter(table, name, info=context.info, nominal_effects=context.nominal_effects)
+        given = context.parameters[name]
         require_within(table, name, value, lower=given.lower, upper=given.upper)
 
 
 def _check_additions(table: Table, additions: Mapping[str, float], context: Context) -> None:
     for name, addition in additions.items():
         own = find_parameter(table, name, info=context.info, nominal_effects=context.nominal_effects)
-        given = context.parameters.get(name, NominalParameter(own.typical, lower=own.lower, upper=own.upper))
         # the user's own bounds hold for the bare parameter, the physical ones for the sum
-        require_within(table, name, given.value + addition, lower=own.lower, upper=own.upper)
+        require_within(table, name, context.parameters[name].value + addition, lower=own.lower, upper=own.upper)
 
 
 def _check_initial(table: Table, initial: Mapping[str, float], info: SystemInfo) -> None:

@@ -4,12 +4,11 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from tendonlab.catalog import SystemInfo
-
+from tendonlab import catalog
 from tendonlab.data.controller import check_controller, read_controller
 from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
 from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
-from tendonlab.data.parameters import missing_values, read_nominal_effects, read_parameters, read_system
+from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
 from tendonlab.data.schema import FILE, read_toml
 from tendonlab.data.signals import doubts, read_signals
 from tendonlab.errors import DatasetError
@@ -42,8 +41,10 @@ def load(path: str | PathLike[str]) -> Dataset:
     )
     experiments = read_experiments(top, context)
     _require_motion(experiments, signals.values(), info=info, controller=controller)
+    command = signals.get("motor_torque")
+    command_is_effort = command is None or command.si_unit == catalog.unit("effort", axis)
     warnings = [
-        *missing_values(parameters, info, nominal_effects=nominal_effects),
+        *assumptions(top, parameters, command_is_effort=command_is_effort),
         *doubts(signals.values(), info),
         *_split_notes(experiments, given=split_is_given(top)),
     ]
@@ -66,7 +67,7 @@ def _require_motion(
     experiments: tuple[Experiment, ...],
     signals: Iterable[SignalSpec],
     *,
-    info: SystemInfo,
+    info: catalog.SystemInfo,
     controller: Controller | None,
 ) -> None:
     """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing."""

@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 
 from tendonlab.catalog import Parameter, SystemInfo, kinds, system_info
-
 from tendonlab.data.dataset import NominalParameter
 from tendonlab.data.names import expected_one_of
 from tendonlab.data.schema import Table
@@ -36,25 +35,29 @@ def read_nominal_effects(top: Table, info: SystemInfo) -> tuple[str, ...]:
 
 
 def read_parameters(top: Table, info: SystemInfo, *, nominal_effects: tuple[str, ...]) -> dict[str, NominalParameter]:
-    """The nominal values by name. Raises DatasetError: unknown, not nominal, outside its bounds."""
+    """The nominal values by name, of everything that the simulator contains. Raises DatasetError: unknown, not nominal,
+    outside its bounds, or absent where no value would mean that it is not there."""
     tables = top.table("system").table("parameters", optional=True)
-    nominal = {}
     for name in tables.values:
-        parameter = find_parameter(tables, name, info=info, nominal_effects=nominal_effects)
-        nominal[name] = _read_parameter(tables.table(name), parameter)
+        find_parameter(tables, name, info=info, nominal_effects=nominal_effects)
+    nominal = {}
+    for parameter in info.parameters:
+        if parameter.name in tables.values:
+            nominal[parameter.name] = _read_parameter(tables.table(parameter.name), parameter)
+        elif _is_nominal(parameter, info, nominal_effects):
+            nominal[parameter.name] = _assume(tables, parameter, info)
     return nominal
 
 
-def missing_values(
-    parameters: Mapping[str, NominalParameter], info: SystemInfo, *, nominal_effects: tuple[str, ...]
-) -> list[str]:
-    """A warning for every nominal parameter without a value; that of `torque_constant` is 1 unless given."""
+def assumptions(top: Table, parameters: Mapping[str, NominalParameter], *, command_is_effort: bool) -> list[str]:
+    """A warning for every parameter without a value in the file; a `torque_constant` of 1 goes without saying where the
+    command is an effort."""
+    written = top.table("system").table("parameters", optional=True).values
+    silent = ("torque_constant",) if command_is_effort else ()
     return [
-        f"{parameter.name}: no nominal value given; the library's typical value {parameter.typical:g} is assumed"
-        for parameter in info.parameters
-        if parameter.name not in parameters
-        and parameter.name != "torque_constant"
-        and _is_nominal(parameter, info, nominal_effects)
+        f"{name}: no nominal value given; {parameter.value:g} is assumed" + (", exactly" if parameter.sd == 0.0 else "")
+        for name, parameter in parameters.items()
+        if name not in written and name not in silent
     ]
 
 
@@ -88,12 +91,27 @@ def _read_parameter(table: Table, parameter: Parameter) -> NominalParameter:
     return NominalParameter(value=value, sd=sd, lower=lower, upper=upper)
 
 
+def _assume(table: Table, parameter: Parameter, info: SystemInfo) -> NominalParameter:
+    """What an absent value means: that part of the simulator is not there, or is as the table has it."""
+    structural = {effect.name for effect in info.effects if effect.structural}
+    own = parameter.effect is None or not structural.isdisjoint(_effects_with(parameter, info))
+    absolute = parameter.purpose in ("shape", "share") and parameter.dimension in ("ratio", "time")
+    if own and (parameter.typical == 0.0 or parameter.name == "torque_constant"):
+        value, known = parameter.typical, True
+    elif not own and absolute:
+        value, known = parameter.typical, parameter.purpose == "share"
+    elif not own and parameter.lower <= 0.0 <= parameter.upper:
+        value, known = 0.0, False
+    else:
+        raise table.error(parameter.name, f"is missing; expected the nominal value ({parameter.meaning})")
+    return NominalParameter(value=value, sd=0.0 if known else None, lower=parameter.lower, upper=parameter.upper)
+
+
 def _effects_with(parameter: Parameter, info: SystemInfo) -> list[str]:
     return [effect.name for effect in info.effects if parameter.name in effect.parameters]
 
 
 def _is_nominal(parameter: Parameter, info: SystemInfo, nominal_effects: tuple[str, ...]) -> bool:
-    """Whether the simulator has it: always, or by an effect that it contains."""
-    if parameter.effect is None:
-        return True
-    return any(effect in nominal_effects for effect in _effects_with(parameter, info))
+    """Whether the simulator has it: of the system itself, or of an effect that it contains."""
+    contained = {effect.name for effect in info.effects if effect.structural} | set(nominal_effects)
+    return parameter.effect is None or not contained.isdisjoint(_effects_with(parameter, info))
