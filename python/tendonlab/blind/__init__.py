@@ -1,0 +1,12 @@
+"""Blind check of the diagnosis: an independent generator of synthetic rigs, the runner that never sees the truth,
+the scorer.
+
+The generator shares only the data format with the rest of tendonlab: no law, no stepper, no catalogue.
+"""
+
+from .draw import draw
+from .run import run
+from .score import Score, score
+from .twin import make_twin
+
+__all__ = ["Score", "draw", "make_twin", "run", "score"]

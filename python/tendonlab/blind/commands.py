@@ -1,0 +1,76 @@
+"""`tendonlab blind draw|run|score`: the blind protocol on the command line."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from .draw import draw
+from .run import run
+from .score import score
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `blind` to the subparsers of the command line; the chosen verb is called as `given.run(given)` and returns
+    an exit code.
+    """
+    blind = subparsers.add_parser("blind", help="check the diagnosis on synthetic rigs whose truth is sealed")
+    verbs = blind.add_subparsers(dest="verb", required=True, metavar="draw|run|score")
+
+    drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth into OUT/sealed")
+    drawing.add_argument("out", type=Path, metavar="OUT")
+    drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
+    drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
+    drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
+
+    running = _verb(verbs, "run", _run, "diagnose every case, resuming where it was interrupted, and hash the reports")
+    running.add_argument("cases", type=Path, metavar="CASES")
+    running.add_argument("--out", type=Path, required=True, help="folder of the reports and verdicts.json")
+    running.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
+
+    scoring = _verb(verbs, "score", _score, "open the truth and compare")
+    scoring.add_argument("sealed", type=Path, metavar="SEALED")
+    scoring.add_argument("reports", type=Path, metavar="REPORTS")
+    scoring.add_argument("--csv", type=Path, help="write one row a case here")
+    scoring.add_argument("--json", type=Path, help="write summary and cases here")
+
+
+def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = verbs.add_parser(name, help=text, description=text)
+    parser.set_defaults(run=call)
+    return parser
+
+
+def _draw(given: argparse.Namespace) -> int:
+    print(draw(given.seed, given.count, given.out, jobs=given.jobs))
+    return 0
+
+
+def _run(given: argparse.Namespace) -> int:
+    print(run(given.cases, given.out, jobs=given.jobs))
+    return 0
+
+
+def _score(given: argparse.Namespace) -> int:
+    result = score(given.sealed, given.reports)
+    print(result)
+    if given.csv:
+        result.cases.to_csv(given.csv)
+    if given.json:
+        given.json.write_text(json.dumps(result.to_dict(), indent=1, allow_nan=True) + "\n", encoding="utf-8")
+    return 0
+
+
+def main() -> int:
+    """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|score."""
+    parser = argparse.ArgumentParser(prog="python -m tendonlab")
+    add_parser(parser.add_subparsers(dest="command", required=True))
+    given = parser.parse_args()
+    return int(given.run(given))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

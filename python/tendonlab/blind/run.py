@@ -1,0 +1,84 @@
+"""Diagnose every blind case in a process of its own, and seal the verdicts with a hash before anyone opens the
+truth.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+
+from tqdm import tqdm
+
+REPORT = "report.json"
+VERDICTS = "verdicts.json"
+
+
+def command(case: Path, out: Path) -> list[str]:
+    """The command that diagnoses one case; it is given the case's folder and nothing else."""
+    return [sys.executable, "-m", "tendonlab", "diagnose", str(case), "--out", str(out), "--no-figures"]
+
+
+def run(cases: Path | str, out: Path | str, *, jobs: int = 1) -> Path:
+    """Diagnose all cases into `out`/<id>, skipping those that have a report, and return `out`/verdicts.json.
+
+    A case that fails is recorded there as "failed" with the last line it wrote. Raises ValueError where `cases`
+    holds no dataset or a truth file within reach ("sealed" in a name).
+    """
+    cases, out = Path(cases).resolve(), Path(out).resolve()
+    folders = sorted(path.parent for path in cases.glob("*/dataset.toml"))
+    if not folders:
+        raise ValueError(f"{cases}: expected folders with a dataset.toml, found none")
+    refuse_truth(cases)
+    refuse_truth(out)
+    out.mkdir(parents=True, exist_ok=True)
+    failed: dict[str, str] = {}
+    todo = [folder for folder in folders if not (out / folder.name / REPORT).exists()]
+    with ThreadPoolExecutor(max(1, jobs)) as pool:
+        pending = {pool.submit(_diagnose, folder, out / folder.name): folder.name for folder in todo}
+        for future in tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case"):
+            message = future.result()
+            if message:
+                failed[pending[future]] = message
+    return _seal(out, [folder.name for folder in folders], failed)
+
+
+def refuse_truth(folder: Path) -> None:
+    """Raise ValueError if anything below `folder` is named "sealed": the diagnosis could read the answers."""
+    for path in sorted(folder.rglob("*sealed*")) if folder.exists() else ():
+        raise ValueError(f"{path}: a sealed truth within the folder of the cases; expected it elsewhere, out of reach")
+
+
+def sha256(path: Path) -> str:
+    """Hex digest of a file's bytes."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _diagnose(case: Path, out: Path) -> str:
+    """Empty if it went well, else the last line that the process wrote."""
+    out.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run(command(case, out), capture_output=True, text=True, check=False)
+    (out / "log.txt").write_text(done.stdout + done.stderr, encoding="utf-8")
+    if done.returncode == 0 and (out / REPORT).exists():
+        return ""
+    lines = (done.stderr or done.stdout).strip().splitlines() or [f"no {REPORT} was written"]
+    return f"exit {done.returncode}: {lines[-1]}"
+
+
+def _seal(out: Path, names: list[str], failed: dict[str, str]) -> Path:
+    reports: dict[str, dict[str, object]] = {}
+    for name in names:
+        path = out / name / REPORT
+        if not path.exists():
+            reports[name] = {"verdict": "failed", "message": failed.get(name, "no report")}
+            continue
+        report = json.loads(path.read_text(encoding="utf-8"))
+        reports[name] = {"verdict": report["verdict"], "selected": report.get("selected", []), "sha256": sha256(path)}
+    target = out / VERDICTS
+    target.write_text(
+        json.dumps({"format": "tendonlab-verdicts/1", "reports": reports}, indent=1) + "\n", encoding="utf-8"
+    )
+    return target
