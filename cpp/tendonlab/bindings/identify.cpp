@@ -1,0 +1,175 @@
+#include <pybind11/eigen.h>
+
+#include "tendonlab/bindings/convert.hpp"
+#include "tendonlab/core/error.hpp"
+#include "tendonlab/identify/fit.hpp"
+
+namespace tendonlab::bindings {
+namespace {
+using identify::ChannelNoise;
+using identify::Free;
+using identify::RowMatrix;
+using identify::Task;
+using identify::Whitening;
+using Signals = Eigen::Ref<const RowMatrix>;
+using Conditions = std::vector<std::pair<std::size_t, double>>;
+using ReleaseGil = py::call_guard<py::gil_scoped_release>;
+
+/// Outlives the fits that poll it, whoever sets it.
+struct Cancel {
+  identify::Cancel flag{false};
+};
+
+std::shared_ptr<Whitening> make_whitening(std::vector<std::vector<double>> ar, const std::vector<double>& sd,
+                                          const Signals& measured, const Eigen::Ref<const Eigen::MatrixXd>& directions,
+                                          const std::vector<double>& spread) {
+  if (ar.size() != sd.size())
+    throw ParameterError(sentence("ar of ", ar.size(), " channels: expected ", sd.size(), ", as in sd"));
+  std::vector<ChannelNoise> noise;
+  for (std::size_t c = 0; c < sd.size(); ++c) noise.push_back({std::move(ar[c]), sd[c]});
+  return std::make_shared<Whitening>(std::move(noise), measured, directions, spread);
+}
+
+Eigen::MatrixXd apply_many(const Whitening& whitening, const Array& many) {
+  if (many.ndim() != 3 || many.shape(1) != whitening.channels() || many.shape(2) != whitening.samples())
+    throw ParameterError(sentence("signals with ", many.ndim(), " dimensions: expected shape (m, ", whitening.channels(), ", ",
+                                  whitening.samples(), ")"));
+  Eigen::MatrixXd all(whitening.rows(), many.shape(0));
+  for (py::ssize_t k = 0; k < many.shape(0); ++k)
+    whitening.filter(Eigen::Map<const RowMatrix>(many.data(k), whitening.channels(), whitening.samples()), all.col(k));
+  whitening.shrink(all);
+  return all;
+}
+
+Task make_task(const integrate::Experiment& experiment, std::shared_ptr<Whitening> whitening,
+               const std::map<std::size_t, double>& fixed, const std::map<std::size_t, double>& added,
+               const std::vector<std::pair<std::string, int>>& initial, const std::vector<double>& initial_sd) {
+  if (initial.size() != initial_sd.size())
+    throw ParameterError(sentence(initial_sd.size(), " initial_sd: expected ", initial.size(), ", one an initial state"));
+  Task task{std::make_shared<integrate::Experiment>(experiment), std::move(whitening),
+            Conditions(fixed.begin(), fixed.end()), Conditions(added.begin(), added.end()), {}};
+  const auto seeds = make_seeds(initial);
+  for (std::size_t k = 0; k < seeds.size(); ++k) task.initial.push_back({seeds[k], initial_sd[k]});
+  return task;
+}
+
+identify::Problem make_problem(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
+                               const std::vector<Task>& tasks, const std::vector<Free>& free,
+                               const std::vector<std::vector<double>>& initial, const integrate::Settings& settings) {
+  const Model& of = model(kind);
+  return {of, make_configuration(of, values, active), tasks, free, initial, settings};
+}
+
+py::dict to_dict(identify::Result of) {
+  py::list residuals, jacobian, jacobian_initial;
+  for (auto& task : of.tasks) {
+    residuals.append(py::cast(std::move(task.residual)));
+    jacobian.append(py::cast(std::move(task.by_free)));
+    jacobian_initial.append(py::cast(std::move(task.by_initial)));
+  }
+  return py::dict(py::arg("values") = of.values, py::arg("x") = of.x, py::arg("initial") = of.initial,
+                  py::arg("cost") = of.cost, py::arg("prior_cost") = of.prior_cost, py::arg("converged") = of.converged,
+                  py::arg("message") = of.message, py::arg("iterations") = of.iterations,
+                  py::arg("at_bound") = of.at_bound, py::arg("residuals") = residuals, py::arg("jacobian") = jacobian,
+                  py::arg("jacobian_initial") = jacobian_initial);
+}
+
+template <class Solve>
+py::dict without_gil(Solve solve) {
+  identify::Result result;
+  {
+    py::gil_scoped_release release;
+    result = solve();
+  }
+  return to_dict(std::move(result));
+}
+
+void bind_whitening(py::module_& module) {
+  py::class_<Whitening, std::shared_ptr<Whitening>>(
+      module, "Whitening",
+      "Turns residuals of one experiment into independent ones of unit variance: a filter a channel, innovation\n"
+      "(r_t - sum_k ar[k] r_{t-1-k}) / sd (sd infinite or <= 0: not scored), then (I + V diag(spread^2) V')^(-1/2) with\n"
+      "V = directions, shape (rows, k), already filtered. measured: (channels, samples), NaN where nothing was measured.\n"
+      "Rows: channel by channel, time increasing; a sample counts where it and those its filter needs were measured.")
+      .def(py::init([](std::vector<std::vector<double>> ar, const std::vector<double>& sd, const Signals& measured,
+                       const std::optional<Eigen::MatrixXd>& directions, const std::vector<double>& spread) {
+             return make_whitening(std::move(ar), sd, measured, directions ? *directions : Eigen::MatrixXd(), spread);
+           }),
+           py::arg("ar"), py::arg("sd"), py::arg("measured"), py::arg("directions") = py::none(),
+           py::arg("spread") = std::vector<double>())
+      .def("rows", &Whitening::rows, "Number of rows of what it gives.")
+      .def("apply", &Whitening::apply, py::arg("signals"), ReleaseGil(), "Whitened signals, (channels, samples) -> (rows,).")
+      .def("apply_many", &apply_many, py::arg("signals"), "Whitened signals, (m, channels, samples) -> (rows, m).")
+      .def("residual", &Whitening::residual, py::arg("outputs"), ReleaseGil(),
+           "Whitened differences of `outputs` from what was measured, (channels, samples) -> (rows,).");
+}
+
+void bind_problem(py::module_& module) {
+  py::class_<Cancel>(module, "Cancel", "Stops the fits that it was given to, from any thread.")
+      .def(py::init<>())
+      .def("set", [](Cancel& cancel) { cancel.flag = true; }, "From now on, those fits return at once.")
+      .def("is_set", [](const Cancel& cancel) { return cancel.flag.load(); });
+  py::class_<Task>(module, "Task",
+                   "One experiment of a fit: fixed {parameter index: value there}, added {parameter index: by how much it is\n"
+                   "larger there}; initial: free states [(\"position\" | \"velocity\", axis)], initial_sd: their prior standard\n"
+                   "deviations about the experiment's own initial state.")
+      .def(py::init(&make_task), py::arg("experiment"), py::arg("whitening"), py::kw_only(),
+           py::arg("fixed") = std::map<std::size_t, double>(), py::arg("added") = std::map<std::size_t, double>(),
+           py::arg("initial") = std::vector<std::pair<std::string, int>>(),
+           py::arg("initial_sd") = std::vector<double>())
+      .def("rows", [](const Task& task) { return task.whitening->rows(); }, "Number of its residuals.");
+  py::class_<Free>(module, "Free",
+                   "A fitted parameter: coordinate x = log(value / scale) or value / scale; start, lower, upper are values;\n"
+                   "mean and sd of the normal prior belong to x (sd infinite: no prior).")
+      .def(py::init([](std::size_t index, bool log, double scale, double start, double mean, double sd, double lower,
+                       double upper) { return Free{index, log, scale, start, mean, sd, lower, upper}; }),
+           py::kw_only(), py::arg("index"), py::arg("log"), py::arg("scale"), py::arg("start"), py::arg("mean") = 0.0,
+           py::arg("sd") = inf, py::arg("lower") = -inf, py::arg("upper") = inf)
+      .def_readonly("index", &Free::index)
+      .def_readonly("log", &Free::log)
+      .def_readonly("scale", &Free::scale)
+      .def_readonly("start", &Free::start)
+      .def_readonly("mean", &Free::mean)
+      .def_readonly("sd", &Free::sd)
+      .def_readonly("lower", &Free::lower)
+      .def_readonly("upper", &Free::upper)
+      .def("value", &Free::value, py::arg("x"), "Value at the coordinate x.")
+      .def("coordinate", &Free::coordinate, py::arg("value"), "Coordinate of a value.")
+      .def("slope", &Free::slope, py::arg("x"), "Derivative of the value by the coordinate, at x.");
+}
+}  // namespace
+
+void bind_identify(py::module_& module) {
+  bind_whitening(module);
+  bind_problem(module);
+  module.def(
+      "linearise",
+      [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
+         const std::vector<Task>& tasks, const std::vector<Free>& free, const integrate::Settings& settings,
+         const std::vector<std::vector<double>>& initial) {
+        const auto problem = make_problem(kind, values, active, tasks, free, initial, settings);
+        return without_gil([&] { return identify::linearise(problem); });
+      },
+      py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("tasks"), py::arg("free"), py::arg("settings"),
+      py::kw_only(), py::arg("initial") = std::vector<std::vector<double>>(),
+      "What `fit` returns, at the start and unsolved. `initial`: values of the free states, a list a task (default: the\n"
+      "experiments' own).");
+  module.def(
+      "fit",
+      [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
+         const std::vector<Task>& tasks, const std::vector<Free>& free, const integrate::Settings& settings,
+         const std::vector<std::vector<double>>& initial, int max_iterations, double tolerance, const Cancel* cancel) {
+        const auto problem = make_problem(kind, values, active, tasks, free, initial, settings);
+        return without_gil([&] {
+          return identify::fit(problem, {max_iterations, tolerance, cancel ? &cancel->flag : nullptr});
+        });
+      },
+      py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("tasks"), py::arg("free"), py::arg("settings"),
+      py::kw_only(), py::arg("initial") = std::vector<std::vector<double>>(), py::arg("max_iterations") = 50,
+      py::arg("tolerance") = 1e-8, py::arg("cancel").none(true) = py::none(),
+      "Minimises half the sum of squared whitened residuals and priors. Returns a dict: values (all parameters), x\n"
+      "(coordinates of the free ones), initial (free states, a list a task), cost, prior_cost, converged, message,\n"
+      "iterations, at_bound; per task: residuals (rows,), jacobian (rows, free) by x, jacobian_initial (rows, states) by\n"
+      "(state - prior mean) / sd. Raises NumericalError if a simulation fails at the start.");
+}
+}  // namespace tendonlab::bindings

@@ -1,0 +1,253 @@
+#include "tendonlab/identify/fit.hpp"
+
+#include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+#if __has_include(<glog/logging.h>)
+#include <glog/logging.h>
+#endif
+
+#include <cmath>
+#include <exception>
+
+#include "tendonlab/core/error.hpp"
+#include "tendonlab/identify/predict.hpp"
+
+namespace tendonlab::identify {
+namespace {
+using Vector = Eigen::VectorXd;
+using Coordinates = std::vector<Vector>;  ///< of the free states, a vector a task
+
+/// Hands one experiment to Ceres. No exception may cross it: the first one is kept, and told after the solve.
+class TaskCost final : public ceres::CostFunction {
+ public:
+  TaskCost(const Problem& problem, std::size_t task, const Cancel* stop, std::exception_ptr& first)
+      : prediction(problem, task), cancel(stop), thrown(first) {
+    set_num_residuals(static_cast<int>(problem.tasks[task].whitening->rows()));
+    if (prediction.num_free() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(prediction.num_free()));
+    if (prediction.num_initial() > 0)
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(prediction.num_initial()));
+  }
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    if (cancel && cancel->load()) return false;
+    try {
+      const std::size_t free_blocks = prediction.num_free() > 0 ? 1 : 0;
+      const auto view = [&](std::size_t block, Eigen::Index size) {
+        return size > 0 ? Vector(Eigen::Map<const Vector>(blocks[block], size)) : Vector();
+      };
+      const Linearised at = prediction.at(view(0, prediction.num_free()), view(free_blocks, prediction.num_initial()),
+                                          jacobians != nullptr);
+      Eigen::Map<Vector>(residuals, num_residuals()) = at.residual;
+      const auto fill = [&](std::size_t block, const RowMatrix& derivative) {
+        if (jacobians && derivative.cols() > 0 && jacobians[block])
+          Eigen::Map<RowMatrix>(jacobians[block], derivative.rows(), derivative.cols()) = derivative;
+      };
+      fill(0, at.by_free);
+      fill(free_blocks, at.by_initial);
+      return true;
+    } catch (...) {
+      if (!thrown) thrown = std::current_exception();
+      return false;
+    }
+  }
+
+ private:
+  Prediction prediction;
+  const Cancel* cancel;
+  std::exception_ptr& thrown;
+};
+
+/// Keeps the best point, which Ceres forgets when a solve fails, and stops a cancelled one.
+class Watch final : public ceres::IterationCallback {
+ public:
+  Watch(const Cancel* stop, const Vector& free, const Coordinates& states)
+      : cancel(stop), x(free), z(states), best_x(free), best_z(states) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (iteration.step_is_successful) best_x = x, best_z = z;
+    iterations = iteration.iteration;
+    return cancel && cancel->load() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+  const Cancel* cancel;
+  const Vector& x;
+  const Coordinates& z;
+  Vector best_x;
+  Coordinates best_z;
+  int iterations = 0;
+};
+
+void add_priors(const Problem& problem, Vector& x, Coordinates& z, ceres::Problem& to) {
+  std::vector<Eigen::Index> known;
+  for (std::size_t k = 0; k < problem.free.size(); ++k)
+    if (std::isfinite(problem.free[k].sd)) known.push_back(static_cast<Eigen::Index>(k));
+  ceres::Matrix weight = ceres::Matrix::Zero(static_cast<Eigen::Index>(known.size()), x.size());
+  Vector mean = Vector::Zero(x.size());
+  for (std::size_t row = 0; row < known.size(); ++row) {
+    const Free& free = problem.free[static_cast<std::size_t>(known[row])];
+    weight(static_cast<Eigen::Index>(row), known[row]) = 1.0 / free.sd;
+    mean(known[row]) = free.mean;
+  }
+  if (!known.empty()) to.AddResidualBlock(new ceres::NormalPrior(weight, mean), nullptr, x.data());
+  for (Vector& states : z)
+    if (const auto n = states.size(); n > 0)
+      to.AddResidualBlock(new ceres::NormalPrior(ceres::Matrix::Identity(n, n), Vector::Zero(n)), nullptr, states.data());
+}
+
+void add_bounds(const Problem& problem, Vector& x, ceres::Problem& to) {
+  for (std::size_t k = 0; k < problem.free.size(); ++k) {
+    const Free& free = problem.free[k];
+    const double lower = free.coordinate(free.lower), upper = free.coordinate(free.upper);
+    if (std::isfinite(lower)) to.SetParameterLowerBound(x.data(), static_cast<int>(k), lower);
+    if (std::isfinite(upper)) to.SetParameterUpperBound(x.data(), static_cast<int>(k), upper);
+  }
+}
+
+ceres::Solver::Options solver_options(const Options& options, Vector& x, Coordinates& z) {
+  ceres::Solver::Options with;
+  with.max_num_iterations = options.max_iterations;
+  with.function_tolerance = options.tolerance;
+  with.parameter_tolerance = options.tolerance;
+  with.gradient_tolerance = 1e-12;
+  with.num_threads = 1;  // same bits; callers run several fits at once
+  with.logging_type = ceres::SILENT;
+  with.update_state_every_iteration = true;  // for Watch
+  with.linear_solver_type = ceres::DENSE_QR;
+  auto order = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (Vector& states : z)
+    if (states.size() > 0) {
+      order->AddElementToGroup(states.data(), 0);  // each couples only to x: eliminated first
+      with.linear_solver_type = ceres::DENSE_SCHUR;
+    }
+  if (x.size() > 0) order->AddElementToGroup(x.data(), 1);
+  if (with.linear_solver_type == ceres::DENSE_SCHUR && x.size() > 0) with.linear_solver_ordering = order;
+  if (x.size() == 0) with.linear_solver_type = ceres::DENSE_QR;
+  return with;
+}
+
+void silence_log() {
+#if __has_include(<glog/logging.h>) && !defined(CERCES_INTERNAL_MINIGLOG_GLOG_LOGGING_H_)
+  FLAGS_minloglevel = google::GLOG_FATAL;  // a library writes nothing to stderr; what happened is in the result
+#endif
+}
+
+std::string words(const std::exception_ptr& thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+void tell(const ceres::Solver::Summary& summary, const Options& options, const std::exception_ptr& thrown, Result& of) {
+  of.converged = summary.termination_type == ceres::CONVERGENCE;
+  if (options.cancel && options.cancel->load())
+    of.converged = false, of.message = "cancelled";
+  else if (of.converged)
+    of.message = "converged";
+  else if (summary.termination_type == ceres::NO_CONVERGENCE)
+    of.message = sentence("stopped after ", options.max_iterations, " iterations while the cost was still falling");
+  else
+    of.message = thrown ? "stopped where simulations fail: " + words(thrown) : "stopped: " + summary.message;
+}
+
+void require_sound(const Problem& problem) {
+  const std::size_t count = problem.configuration.values.size();
+  if (problem.tasks.empty()) throw ParameterError("tasks: none; expected at least one experiment");
+  for (const Free& free : problem.free) {
+    if (free.index >= count) throw ParameterError(sentence("free index = ", free.index, ": expected less than ", count));
+    const std::string& name = problem.model.info().parameters[free.index].name;
+    require_within("scale of " + name, free.scale, 1e-300, 1e300, "");
+    if (!(free.sd > 0)) throw ParameterError(sentence("prior sd of ", name, " = ", free.sd, ": expected more than 0"));
+    if (std::isfinite(free.sd)) require_within("prior mean of " + name, free.mean, -1e300, 1e300, "");
+    if (!(free.lower < free.upper))
+      throw ParameterError(sentence("bounds of ", name, " = [", free.lower, ", ", free.upper, "]: expected lower < upper"));
+    require_within("start of " + name, free.start, free.lower, free.upper, "");
+    if (free.log && !(free.start > 0))
+      throw ParameterError(sentence("start of ", name, " = ", free.start, ": expected more than 0 for a log coordinate"));
+  }
+  if (!problem.initial.empty() && problem.initial.size() != problem.tasks.size())
+    throw ParameterError(sentence("initial states of ", problem.initial.size(), " tasks: expected ", problem.tasks.size()));
+}
+
+Vector start_of_free(const Problem& problem) {
+  Vector x(static_cast<Eigen::Index>(problem.free.size()));
+  for (std::size_t k = 0; k < problem.free.size(); ++k)
+    x(static_cast<Eigen::Index>(k)) = problem.free[k].coordinate(problem.free[k].start);
+  return x;
+}
+Coordinates start_of_states(const Problem& problem) {
+  Coordinates z;
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
+    const Prediction prediction(problem, e);
+    z.push_back(problem.initial.empty() ? Vector(Vector::Zero(prediction.num_initial()))
+                                        : prediction.coordinates(problem.initial[e]));
+  }
+  return z;
+}
+
+/// Everything about the point (x, z) that a caller asks for.
+Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
+  Result of;
+  of.values = problem.configuration.values;
+  of.x.assign(x.data(), x.data() + x.size());
+  for (std::size_t k = 0; k < problem.free.size(); ++k) {
+    const Free& free = problem.free[k];
+    const double at = of.x[k];
+    of.values[free.index] = free.value(at);
+    const auto touches = [&](double bound) { return std::fabs(at - bound) <= 1e-9 * (1.0 + std::fabs(bound)); };
+    of.at_bound.push_back(touches(free.coordinate(free.lower)) || touches(free.coordinate(free.upper)));
+    if (std::isfinite(free.sd)) of.prior_cost += 0.5 * std::pow((at - free.mean) / free.sd, 2);
+  }
+  of.cost = of.prior_cost;
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
+    const Prediction prediction(problem, e);
+    of.tasks.push_back(prediction.at(x, z[e], true));
+    of.initial.push_back(prediction.states(z[e]));
+    of.prior_cost += 0.5 * z[e].squaredNorm();
+    of.cost += 0.5 * (z[e].squaredNorm() + of.tasks.back().residual.squaredNorm());
+  }
+  return of;
+}
+}  // namespace
+
+double Free::value(double x) const { return scale * (log ? std::exp(x) : x); }
+double Free::coordinate(double value) const {
+  if (!log) return value / scale;
+  return value > 0 ? std::log(value / scale) : -inf;
+}
+double Free::slope(double x) const { return log ? value(x) : scale; }
+
+Result linearise(const Problem& problem) {
+  require_sound(problem);
+  return describe(problem, start_of_free(problem), start_of_states(problem));
+}
+
+Result fit(const Problem& problem, const Options& options) {
+  require_sound(problem);
+  require_within("max_iterations", options.max_iterations, 0, 1e6, "");
+  require_within("tolerance", options.tolerance, 1e-15, 1.0, "");
+  Vector x = start_of_free(problem);
+  Coordinates z = start_of_states(problem);
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) Prediction(problem, e).at(x, z[e], false);  // throws at the start
+  std::exception_ptr thrown;
+  ceres::Problem solved;
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
+    std::vector<double*> blocks;
+    if (x.size() > 0) blocks.push_back(x.data());
+    if (z[e].size() > 0) blocks.push_back(z[e].data());
+    if (blocks.empty()) throw ParameterError("free: none; expected at least one free parameter or initial state a task");
+    solved.AddResidualBlock(new TaskCost(problem, e, options.cancel, thrown), nullptr, blocks);
+  }
+  add_priors(problem, x, z, solved);
+  add_bounds(problem, x, solved);
+  silence_log();
+  auto with = solver_options(options, x, z);
+  Watch watch(options.cancel, x, z);
+  with.callbacks.push_back(&watch);
+  ceres::Solver::Summary summary;
+  ceres::Solve(with, &solved, &summary);
+  Result of = describe(problem, watch.best_x, watch.best_z);
+  of.iterations = watch.iterations;
+  tell(summary, options, thrown, of);
+  return of;
+}
+}  // namespace tendonlab::identify

@@ -1,0 +1,92 @@
+#include "tendonlab/identify/whitening.hpp"
+
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "tendonlab/core/error.hpp"
+
+namespace tendonlab::identify {
+Whitening::Whitening(std::vector<ChannelNoise> channel_noise, RowMatrix measurement,
+                     const Eigen::Ref<const Eigen::MatrixXd>& directions, const std::vector<double>& spread)
+    : noise(std::move(channel_noise)), measured(std::move(measurement)) {
+  if (static_cast<Eigen::Index>(noise.size()) != measured.rows())
+    throw ParameterError(sentence("noise of ", noise.size(), " channels: expected ", measured.rows(), ", as measured"));
+  for (std::size_t c = 0; c < noise.size(); ++c)
+    for (const double a : noise[c].ar)
+      if (!std::isfinite(a)) throw ParameterError(sentence("ar[", c, "] = ", a, ": expected finite coefficients"));
+  find_runs();
+  find_basis(directions, spread);
+}
+
+bool Whitening::scores(std::size_t channel) const { return noise[channel].sd > 0 && std::isfinite(noise[channel].sd); }
+
+void Whitening::find_runs() {
+  for (std::size_t c = 0; c < noise.size(); ++c) {
+    if (!scores(c)) continue;
+    const auto row = static_cast<Eigen::Index>(c);
+    const auto order = static_cast<Eigen::Index>(noise[c].ar.size());
+    Eigen::Index unbroken = 0;
+    const std::size_t runs_before = runs.size();
+    for (Eigen::Index t = 0; t < measured.cols(); ++t) {
+      unbroken = std::isfinite(measured(row, t)) ? unbroken + 1 : 0;
+      if (unbroken <= order) continue;
+      if (unbroken == order + 1) runs.push_back({c, t, 0});
+      ++runs.back().length;
+      ++num_rows;
+    }
+    if (runs.size() == runs_before)
+      throw ParameterError(sentence("channel ", c, ": no ", order + 1, " samples in a row were measured; expected some, or sd[",
+                                    c, "] = inf to leave it out"));
+  }
+  if (num_rows == 0) throw ParameterError("sd: no channel has a finite positive one; expected something to score");
+}
+
+void Whitening::find_basis(const Eigen::Ref<const Eigen::MatrixXd>& directions, const std::vector<double>& spread) {
+  const auto k = static_cast<Eigen::Index>(spread.size());
+  if (directions.cols() != k || (k > 0 && directions.rows() != num_rows))
+    throw ParameterError(sentence("directions of shape (", directions.rows(), ", ", directions.cols(), "): expected (",
+                                  num_rows, ", ", k, "), a column for each spread"));
+  for (const double tau : spread) require_within("spread", tau, 0.0, std::numeric_limits<double>::max(), "");
+  if (k == 0) return;
+  if (!directions.allFinite()) throw ParameterError("directions: not finite; expected finite numbers");
+  const Eigen::MatrixXd scaled = directions * Eigen::Map<const Eigen::VectorXd>(spread.data(), k).asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
+  basis = svd.matrixU();
+  gain = (1.0 + svd.singularValues().array().square()).rsqrt() - 1.0;
+}
+
+void Whitening::filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out) const {
+  Eigen::Index row = 0;
+  for (const Run& run : runs) {
+    const ChannelNoise& of = noise[run.channel];
+    const auto signal = signals.row(static_cast<Eigen::Index>(run.channel)).transpose();
+    auto filtered = out.segment(row, run.length);
+    filtered = signal.segment(run.first, run.length);
+    Eigen::Index lag = 0;
+    for (const double a : of.ar) filtered -= a * signal.segment(run.first - ++lag, run.length);
+    filtered /= of.sd;
+    row += run.length;
+  }
+}
+
+void Whitening::shrink(Eigen::Ref<Eigen::MatrixXd> columns) const {
+  if (gain.size() == 0) return;
+  const Eigen::MatrixXd along = gain.asDiagonal() * (basis.transpose() * columns);
+  columns.noalias() += basis * along;
+}
+
+Eigen::VectorXd Whitening::apply(const Eigen::Ref<const RowMatrix>& signals) const {
+  if (signals.rows() != channels() || signals.cols() != samples())
+    throw ParameterError(sentence("signals of shape (", signals.rows(), ", ", signals.cols(), "): expected (", channels(),
+                                  ", ", samples(), ")"));
+  Eigen::VectorXd out(num_rows);
+  filter(signals, out);
+  shrink(out);
+  return out;
+}
+
+Eigen::VectorXd Whitening::residual(const Eigen::Ref<const RowMatrix>& signals) const {
+  if (signals.rows() != channels() || signals.cols() != samples()) return apply(signals);  // says what is wrong
+  return apply(RowMatrix(signals - measured));
+}
+}  // namespace tendonlab::identify
