@@ -35,7 +35,7 @@ class EffectFinding:
 
     `probability` is marginal: that this effect is part of the cause. `parameters`: name -> {value, ci95, unit}, in the
     unit stated. `held_out_gain`: {mean, se}, nats of predictive log score over the refitted simulator. `shrinkage`:
-    {value, ci95} of the held-out gap, or None where the gap is 0. `extra`: evidence by name (nats unless named otherwise).
+    {value, ci95} of the held-out gap, or None where the gap is 0. `extra`: evidence by name, nats.
     """
 
     effect: str
@@ -54,15 +54,17 @@ class EffectFinding:
     def to_dict(self) -> dict[str, Any]:
         """Plain types; the evidence is written under `extra`, if there is any."""
         keys = ("effect", "element", "probability", "parameters", "held_out_gain", "shrinkage")
-        return plain({key: getattr(self, key) for key in keys} | ({"extra": self.extra} if self.extra else {}))
+        entry = {key: getattr(self, key) for key in keys} | ({"extra": self.extra} if self.extra else {})
+        written: dict[str, Any] = plain(entry)
+        return written
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Overlay:
     """One held-out experiment with its three predictions.
 
-    `time` has shape (n,), s; the arrays per signal have shape (n,) in the signal's unit, NaN where nothing was measured.
-    `floor` is the noise floor of each signal, RMS in its unit. Raises ParameterError if an array has another shape.
+    `time` has shape (n,), s; the arrays per signal have shape (n,) in its unit, NaN where not measured. `floor` is
+    the noise floor of each signal, RMS in its unit. Raises ParameterError if an array has another shape.
     """
 
     name: str
@@ -84,7 +86,8 @@ class WhereMap:
     """Where in motion (and position or load) the residual of one element lies.
 
     `x_edges` (nx + 1,) and `y_edges` (ny + 1,) bound the cells, in `x_unit` and `y_unit`; `refitted` and `with_effect`,
-    shape (ny, nx), are RMS residuals over the noise floor, NaN in cells without data. Raises ParameterError on other shapes.
+    shape (ny, nx), are RMS residuals over the noise floor, NaN in cells without data. Raises ParameterError on other
+    shapes.
     """
 
     element: str
@@ -116,10 +119,11 @@ class SideTable:
 class Diagnosis:
     """Why the simulator and the rig disagree. The first fields are those of report.json, whose shapes they share.
 
-    `gap` is by output, RMS in its unit: noise_floor, nominal, refitted, with_effect, on held-out experiments. `units`: unit
-    of every signal and coordinate. `held_out`: one row per held-out experiment, columns nominal, refitted, with_effect: the
-    gap there, pooled over outputs, in noise floors. `split`: names under "train" and "test". `details`: whatever else says
-    how it was computed. Raises ParameterError where a part of the contract is missing or the verdict is unknown.
+    `gap` is by output, RMS in its unit: noise_floor, nominal, refitted, with_effect, on held-out experiments. `units`:
+    unit of every signal and coordinate. `held_out`: one row per held-out experiment, columns nominal, refitted,
+    with_effect: the gap there, pooled over outputs, in noise floors. `split`: names under "train" and "test".
+    `details`: whatever else says how it was computed. Raises ParameterError where a part of the contract is missing or
+    the verdict is unknown.
     """
 
     dataset: str
@@ -153,6 +157,7 @@ class Diagnosis:
         if self.verdict not in VERDICTS:
             raise ParameterError(f"verdict = {self.verdict!r}: expected one of {', '.join(VERDICTS)}")
         _require_keys("verdict_probability", self.verdict_probability, VERDICTS)
+        _require_keys("replay", self.replay, ("kind",))
         _require_keys("where", self.where, ("signals", "elements", "regimes"))
         _require_keys("shrinkage", self.shrinkage, ("from_nominal", "from_refitted"))
         for signal, values in self.gap.items():
@@ -173,14 +178,33 @@ class Diagnosis:
         from tendonlab.report.verdict import version
 
         head = {"format": "tendonlab-diagnosis/1", "tendonlab": version()}
-        keys = ("dataset", "system", "seed", "seconds", "verdict", "verdict_probability", "calibrated", "replay", "gap",
-                "where", "effects", "sets", "selected", "explained", "indistinguishable", "invisible", "shrinkage",
-                "next_experiments", "warnings")  # fmt: skip
+        keys = (
+            "dataset",
+            "system",
+            "seed",
+            "seconds",
+            "verdict",
+            "verdict_probability",
+            "calibrated",
+            "replay",
+            "gap",
+            "where",
+            "effects",
+            "sets",
+            "selected",
+            "explained",
+            "indistinguishable",
+            "invisible",
+            "shrinkage",
+            "next_experiments",
+            "warnings",
+        )
         body = {key: getattr(self, key) for key in keys}
         body["effects"] = [finding.to_dict() for finding in self.effects]
         further: dict[str, Any] = {"held_out": self.held_out.to_dict(orient="index")} if len(self.held_out) else {}
         further |= {key: getattr(self, key) for key in ("split", "details") if getattr(self, key)}
-        return plain(head | body | further)
+        written: dict[str, Any] = plain(head | body | further)
+        return written
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """The candidate effects, most probable first, on `ax` or on new axes."""
@@ -231,6 +255,6 @@ def _require_keys(name: str, mapping: Mapping[str, Any], keys: Sequence[str]) ->
         raise ParameterError(f"{name} lacks {', '.join(missing)}: expected {', '.join(keys)}")
 
 
-def _require_shape(name: str, array: Floats | None, shape: tuple[int, ...]) -> None:
-    if np.shape(array) != shape or array is None:
+def _require_shape(name: str, array: Any, shape: tuple[int, ...]) -> None:
+    if array is None or np.shape(array) != shape:
         raise ParameterError(f"{name} has shape {np.shape(array)}: expected {shape}")

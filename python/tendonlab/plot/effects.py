@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tendonlab.plot.style import COLOURS, INK, MUTED, new_axes, tidy
+from tendonlab.plot.style import COLOURS, INK, MUTED, new_axes, tidy, wrapped
 from tendonlab.report.numbers import number, probability, span, unit_text
 from tendonlab.report.words import capital, parameter_words, phrase
 
@@ -23,14 +23,27 @@ def ranked_effects(diagnosis: Diagnosis, ax: Axes | None = None, *, count: int =
     for row, finding in enumerate(shown):
         chosen = finding.name in diagnosis.selected
         ax.barh(row - 0.14, finding.probability, height=0.34, color=COLOURS["with_effect" if chosen else "nominal"])
-        ax.annotate(probability(finding.probability), (finding.probability, row - 0.14), xytext=(4, 0),
-                    textcoords="offset points", va="center", color=INK)  # fmt: skip
-        ax.annotate(_parameters(finding), (0.0, row + 0.06), xytext=(2, -2), textcoords="offset points", va="top",
-                    fontsize="small", color=MUTED)  # fmt: skip
+        ax.annotate(
+            probability(finding.probability),
+            (finding.probability, row - 0.14),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            color=INK,
+        )
+        ax.annotate(
+            _parameters(finding),
+            (0.0, row + 0.06),
+            xytext=(2, -2),
+            textcoords="offset points",
+            va="top",
+            fontsize="small",
+            color=MUTED,
+        )
     tidy(ax, grid="x")
     ax.set(xlim=(0.0, 1.12), xlabel="Probability that it is part of the cause", ylabel="Effect")
     ax.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "0.25", "0.5", "0.75", "1"])
-    ax.set_yticks(range(len(shown)), [capital(phrase(finding.name)) for finding in shown])
+    ax.set_yticks(range(len(shown)), [wrapped(capital(phrase(finding.name)), width=32) for finding in shown])
     ax.set_ylim(max(len(shown), 1) - 0.35, -0.5)
     ax.tick_params(axis="y", length=0)
     if not shown:

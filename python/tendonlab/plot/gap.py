@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from tendonlab.plot.style import COLOURS, INK, new_axes, tidy
+from tendonlab.plot.style import COLOURS, INK, new_axes, tidy, wrapped
 from tendonlab.report.numbers import number, prefixed
 from tendonlab.report.words import STAGES, capital, words
 
@@ -36,8 +36,14 @@ def gap_bars(diagnosis: Diagnosis, ax: Axes | None = None) -> Axes:
         places = [row + (index - (len(stages) - 1) / 2) * _BAR for row in range(len(signals))]
         sizes = [ratios[signal, stage] for signal in signals]
         base = 1.0 if logarithmic else 0.0  # on a log axis a bar has a length only from the floor on
-        ax.barh(places, [size - base for size in sizes], left=base, height=0.85 * _BAR,
-                color=COLOURS[stage], label=capital(STAGES[stage]))  # fmt: skip
+        ax.barh(
+            places,
+            [size - base for size in sizes],
+            left=base,
+            height=0.85 * _BAR,
+            color=COLOURS[stage],
+            label=capital(STAGES[stage]),
+        )
         for place, size, signal in zip(places, sizes, signals, strict=True):
             if math.isfinite(size):
                 _annotate(ax, diagnosis, signal=signal, stage=stage, at=(max(size, 1.0), place))
@@ -46,9 +52,9 @@ def gap_bars(diagnosis: Diagnosis, ax: Axes | None = None) -> Axes:
 
 
 def _annotate(ax: Axes, diagnosis: Diagnosis, *, signal: str, stage: str, at: tuple[float, float]) -> None:
-    value = diagnosis.gap[signal][stage]
-    factor, unit = prefixed([value], diagnosis.units.get(signal, ""))
-    text = f"{number(value * factor)} {unit}".rstrip()
+    values = diagnosis.gap[signal]
+    factor, unit = prefixed([values["refitted"], values["noise_floor"]], diagnosis.units.get(signal, ""))
+    text = f"{number(values[stage] * factor)} {unit}".rstrip()
     ax.annotate(text, at, xytext=(4, 0), textcoords="offset points", va="center", fontsize="small", color=INK)
 
 
@@ -64,7 +70,7 @@ def _finish(ax: Axes, signals: list[str], *, largest: float, smallest: float, lo
         ax.set_xlim(0.0, 1.25 * max(largest, 1.2))
     tidy(ax, grid="x")
     ax.axvline(1.0, color=INK, lw=1.1, ls=(0, (2, 1.5)), label="Noise floor")
-    ax.set_yticks(range(len(signals)), [capital(words(signal)) for signal in signals])
+    ax.set_yticks(range(len(signals)), [wrapped(capital(words(signal)), width=20) for signal in signals])
     ax.set_ylim(max(len(signals), 1) - 0.45, -0.55)
     ax.tick_params(axis="y", length=0)
     ax.set(xlabel="Held-out RMS error / noise floor" + (" (log scale)" if logarithmic else ""), ylabel="Output")

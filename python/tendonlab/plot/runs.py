@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendonlab.errors import ParameterError
-from tendonlab.plot.style import COLOURS, DASHES, INK, MUTED, label, tidy
-from tendonlab.report.numbers import prefixed, unit_text
+from tendonlab.plot.style import COLOURS, DASHES, INK, MUTED, label, tidy, wrapped
+from tendonlab.report.numbers import prefixed
 from tendonlab.report.words import STAGES, capital
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tendonlab.diagnose.result import Diagnosis, Overlay
 
 Floats = NDArray[np.float64]
-_POINTS = 260  # measured points drawn; more would hide the lines
+_POINTS = 110  # measured points drawn; more would hide the lines
 _BINS = 420  # lines keep the two extremes of each bin, so no peak is lost
 _CROSSINGS = 20  # shown at most; beyond, the swings of a run merge into a band
 
@@ -56,7 +56,7 @@ def overlay(
 
 
 def telling_window(run: Overlay) -> tuple[float, float] | None:
-    """The part of a long run, from and to in s, where the nominal and the refitted residual are largest; None: show all.
+    """The part of a long run, from and to in s, where the refitted residual is largest; None: show all of it.
 
     A run is long when its first signal swings more often than the eye can follow."""
     signal, values = next(iter(run.measured.items()))
@@ -80,7 +80,8 @@ def telling_window(run: Overlay) -> tuple[float, float] | None:
 def _two_axes() -> tuple[Axes, Axes]:
     from matplotlib import pyplot
 
-    _, (upper, lower) = pyplot.subplots(2, 1, sharex=True, height_ratios=(2, 1), figsize=(6.4, 4.2), layout="constrained")
+    figure = pyplot.figure(figsize=(6.4, 4.2), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     return upper, lower
 
 
@@ -100,10 +101,15 @@ def _draw_signal(ax: Axes, run: Overlay, *, signal: str, stages: list[str], seen
     time, measured = run.time[seen], run.measured[signal][seen]
     known = np.flatnonzero(np.isfinite(measured))
     some = known[:: max(1, len(known) // _POINTS)]
-    ax.plot(time[some], measured[some], ".", ms=3.2, mew=0, color=INK, label="Measured", zorder=1.9)
+    ax.plot(time[some], measured[some], "o", ms=3.6, mfc="none", mew=0.7, color=INK, label="Measured", zorder=3)
     for stage in stages:
-        ax.plot(*_thin(time, getattr(run, stage)[signal][seen]), color=COLOURS[stage], ls=DASHES[stage], lw=1.2,
-                label=capital(STAGES[stage]))  # fmt: skip
+        ax.plot(
+            *_thin(time, getattr(run, stage)[signal][seen]),
+            color=COLOURS[stage],
+            ls=DASHES[stage],
+            lw=1.2,
+            label=capital(STAGES[stage]),
+        )
     ax.margins(x=0.01)
     tidy(ax, grid="both")
 
@@ -121,6 +127,6 @@ def _draw_residual(
     for stage in stages:
         ax.plot(*_thin(run.time[seen], factor * left[stage]), color=COLOURS[stage], ls=DASHES[stage], lw=0.9)
     ax.set_ylim(-factor * limit or -1.0, factor * limit or 1.0)
-    ax.set_ylabel(f"Residual ({unit_text(shown)})" if shown else "Residual")
+    ax.set_ylabel(f"Residual\n{wrapped(f'({shown})', width=14)}" if shown else "Residual")
     ax.margins(x=0.01)
     tidy(ax, grid="both")

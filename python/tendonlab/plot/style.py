@@ -16,7 +16,7 @@ RULE = "#d4d9de"
 COLOURS = {"measured": INK, "nominal": "#8d959d", "refitted": "#0072b2", "with_effect": "#d55e00"}
 DASHES: dict[str, Any] = {"nominal": (0, (4, 1.5)), "refitted": "-", "with_effect": "-"}
 
-FIGURE: dict[str, Any] = {  # rc settings of the figures that the report makes; axes that a user brings keep theirs
+FIGURE: Any = {  # rc settings of the figures that the report makes; axes that a user brings keep theirs
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.labelsize": 9.0,
@@ -36,6 +36,7 @@ FIGURE: dict[str, Any] = {  # rc settings of the figures that the report makes; 
     "legend.fontsize": 8.5,
     "axes.formatter.use_mathtext": False,
     "svg.fonttype": "none",
+    "text.parse_math": False,  # a dollar in a name is a dollar
 }
 
 
@@ -49,7 +50,14 @@ def new_axes(*, width: float = 6.4, height: float = 3.2) -> Axes:
 def label(name: str, unit: str) -> str:
     """An axis label: "Joint angle (rad)"."""
     shown = unit_text(unit)
-    return f"{capital(words(name))} ({shown})" if shown else capital(words(name))
+    return wrapped(f"{capital(words(name))} ({shown})" if shown else capital(words(name)))
+
+
+def wrapped(text: str, *, width: int = 28) -> str:
+    """`text` in at most three lines of `width` characters: a long name must not leave the axes without room."""
+    from textwrap import fill
+
+    return fill(text, width, max_lines=3, placeholder=" …")
 
 
 def tidy(ax: Axes, *, grid: str | None = "y") -> None:

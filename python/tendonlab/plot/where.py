@@ -25,7 +25,7 @@ _LOG_FROM = 12.0
 def where_map(
     where: WhereMap, ax: Axes | None = None, *, stage: str = "refitted", scale: Normalize | None = None
 ) -> Axes:
-    """RMS residual over the noise floor in each cell, for `stage` "refitted" or "with_effect"; cells without data stay empty.
+    """RMS residual over the noise floor in each cell, for `stage` "refitted" or "with_effect"; empty without data.
 
     `scale`: the colour scale, by default one that the two stages share. With new axes a colour bar is drawn as well."""
     if stage not in ("refitted", "with_effect"):
@@ -58,7 +58,7 @@ def colour_bar(mesh: ScalarMappable, axes: list[Axes]) -> None:
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
     bar.set_label("RMS residual / noise floor")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
 
 
 def _draw(ax: Axes, where: WhereMap, *, stage: str, scale: Normalize) -> QuadMesh:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import base64
 import io
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
 
 from tendonlab.plot import gap_bars, overlay, ranked_effects, where_map
 from tendonlab.plot.runs import telling_window
-from tendonlab.plot.style import FIGURE, INK, MUTED, RULE
+from tendonlab.plot.style import COLOURS, FIGURE, INK, MUTED, RULE
 from tendonlab.plot.where import colour_bar, shared_scale
 
 if TYPE_CHECKING:
@@ -21,48 +23,74 @@ if TYPE_CHECKING:
 
     from tendonlab.diagnose.result import Diagnosis
 
+_ALTS = {
+    "gap": "Held-out error of each output over its noise floor",
+    "overlay": "Measured and predicted signals in a held-out experiment, and the residuals",
+    "where": "Residual over the noise floor in the plane of motion",
+    "effects": "Candidate effects by probability",
+}
 LARGEST_SVG = 400_000  # bytes; beyond, the page embeds the PNG
 _MOST = 4  # outputs and where maps drawn; the tables list all
-_PAGE_COLOURS = {INK: "var(--ink)", MUTED: "var(--muted)", RULE: "var(--rule)", "#ffffff": "none"}
+_PAGE_COLOURS = {
+    INK: "var(--ink)",
+    MUTED: "var(--muted)",
+    RULE: "var(--rule)",
+    COLOURS["refitted"]: "var(--refitted)",
+    "#ffffff": "none",
+}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Picture:
-    """One figure as files: `svg` with text as text, `png` at 160 dots per inch, `alt` what it shows."""
+    """One figure, saved when it is asked for: `svg` with text as text, `png` at 160 dots per inch."""
 
     name: str
     alt: str
-    svg: str
-    png: bytes
+    figure: Figure
+
+    @cached_property
+    def svg(self) -> str:
+        stream = io.StringIO()
+        self._save(stream, {"format": "svg", "metadata": {"Date": None, "Creator": None}})
+        return stream.getvalue()
+
+    @cached_property
+    def png(self) -> bytes:
+        stream = io.BytesIO()
+        self._save(stream, {"format": "png", "metadata": {"Software": None}})
+        return stream.getvalue()
 
     def inline(self) -> Markup:
-        """The figure for the page: the SVG, in the colours of the page, or the PNG where the SVG is large."""
-        small = _for_page(self.svg, prefix=self.name)
-        if len(small.encode()) <= LARGEST_SVG:
-            return Markup(small.replace("<svg ", f'<svg role="img" aria-label="{escape(self.alt)}" ', 1))
-        return Markup('<img class="paper" alt="{}" src="data:image/png;base64,{}">').format(
-            self.alt, base64.b64encode(self.png).decode()
-        )
+        """The figure for the page."""
+        return embed(self.svg, lambda: self.png, name=self.name, alt=self.alt)
+
+    def _save(self, stream: io.StringIO | io.BytesIO, options: dict[str, Any]) -> None:
+        import matplotlib
+
+        with matplotlib.rc_context(FIGURE | {"svg.hashsalt": self.name}):  # the same diagnosis gives the same bytes
+            self.figure.savefig(stream, dpi=160, **options)
+        self.figure.set_layout_engine("none")  # laid out once; a second save need not repeat it
+
+
+def embed(svg: str, png: Callable[[], bytes], *, name: str, alt: str) -> Markup:
+    """The SVG in the colours of the page, or the PNG where the SVG is larger than LARGEST_SVG bytes."""
+    small = _for_page(svg, prefix=name)
+    if len(small.encode()) <= LARGEST_SVG:
+        return Markup(small.replace("<svg ", f'<svg role="img" aria-label="{escape(alt)}" ', 1))
+    source = base64.b64encode(png()).decode()
+    return Markup('<img class="paper" alt="{}" src="data:image/png;base64,{}">').format(alt, source)
 
 
 def draw_all(diagnosis: Diagnosis) -> dict[str, Picture]:
     """Every figure for which the diagnosis holds data, by name: gap, overlay, where, effects."""
     import matplotlib
 
+    draw = {"gap": _gap, "overlay": _overlay, "where": _where, "effects": _effects}
     with matplotlib.rc_context(FIGURE):
-        drawn = {"gap": _gap(diagnosis), "overlay": _overlay(diagnosis), "where": _where(diagnosis)}
-        drawn["effects"] = _effects(diagnosis)
-        alts = {
-            "gap": "Held-out error of each output over its noise floor",
-            "overlay": "Measured and predicted signals in a held-out experiment, and the residuals",
-            "where": "Residual over the noise floor in the plane of motion",
-            "effects": "Candidate effects by probability",
-        }
-        return {
-            name: Picture(name=name, alt=alts[name], svg=_save(figure, name), png=_png(figure))
-            for name, figure in drawn.items()
-            if figure is not None
-        }
+        drawn = {name: function(diagnosis) for name, function in draw.items()}
+    return {
+        name: Picture(name=name, alt=_ALTS[name], figure=figure) for name, figure in drawn.items() if figure is not None
+    }
 
 
 def _gap(diagnosis: Diagnosis) -> Figure | None:
@@ -82,7 +110,7 @@ def _overlay(diagnosis: Diagnosis) -> Figure | None:
     if run is None or not run.measured:
         return None
     signals = list(run.measured)[:_MOST]
-    figure = Figure(figsize=(6.8, 0.6 + 2.9 * len(signals)), layout="constrained")
+    figure = Figure(figsize=(6.2, 0.5 + 2.8 * len(signals)), layout="constrained")
     grid = figure.subplots(2 * len(signals), 1, sharex=True, squeeze=False, height_ratios=[2.1, 1] * len(signals))
     axes: list[Axes] = list(grid[:, 0])
     for index, signal in enumerate(signals):
@@ -104,7 +132,7 @@ def _where(diagnosis: Diagnosis) -> Figure | None:
     if not maps:
         return None
     stages = ("refitted", "with_effect") if diagnosis.selected else ("refitted",)
-    figure = Figure(figsize=(7.0 if len(stages) == 2 else 4.6, 2.9 * len(maps)), layout="constrained")
+    figure = Figure(figsize=(6.4 if len(stages) == 2 else 4.4, 2.8 * len(maps)), layout="constrained")
     grid = figure.subplots(len(maps), len(stages), squeeze=False, sharey="row")
     for row, where in zip(grid, maps, strict=True):
         scale = shared_scale(where)
@@ -126,26 +154,11 @@ def _effects(diagnosis: Diagnosis) -> Figure | None:
     return figure
 
 
-def _figure(*, height: float, width: float = 6.8) -> tuple[Figure, Axes]:
+def _figure(*, height: float, width: float = 6.2) -> tuple[Figure, Axes]:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots()
-
-
-def _save(figure: Figure, name: str) -> str:
-    import matplotlib
-
-    stream = io.StringIO()
-    with matplotlib.rc_context({"svg.hashsalt": name}):  # the same diagnosis gives the same bytes
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None}, dpi=160)
-    return stream.getvalue()
-
-
-def _png(figure: Figure) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=160, metadata={"Software": None})
-    return stream.getvalue()
 
 
 def _for_page(svg: str, *, prefix: str) -> str:

@@ -30,11 +30,6 @@ def span(bounds: Sequence[float] | None, digits: int = 3) -> str:
     return "" if bounds is None else f"{number(bounds[0], digits)} to {number(bounds[1], digits)}"
 
 
-def interval(value: float | None, bounds: Sequence[float] | None) -> str:
-    """A value and its 95 % interval: "0.05 (0.04 to 0.06)"."""
-    return number(value) if bounds is None else f"{number(value)} ({span(bounds)})"
-
-
 def probability(value: float | None) -> str:
     """Two decimals, and never a certainty that two decimals cannot state."""
     if value is None or not math.isfinite(value):
@@ -50,9 +45,13 @@ def percent(value: float | None, bounds: Sequence[float] | None = None) -> str:
         return ABSENT
     if bounds is None or not all(map(math.isfinite, bounds)):
         return f"{_hundredths(value)} %"
+    return f"{_hundredths(value)} % ({percent_span(bounds)})"
+
+
+def percent_span(bounds: Sequence[float]) -> str:
+    """Two shares as "88–94 %", or "−5 to 70 %" where a dash would read as a sign."""
     low, high = map(_hundredths, bounds)
-    joint = " to " if min(bounds) < 0 else "–"
-    return f"{_hundredths(value)} % ({low}{joint}{high} %)" if low != high else f"{_hundredths(value)} %"
+    return f"{low}{' to ' if min(bounds) < 0 else '–'}{high} %"
 
 
 def _hundredths(value: float) -> str:

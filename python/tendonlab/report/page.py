@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.report import numbers, words
-from tendonlab.report.verdict import certainty, sentence, version
+from tendonlab.report.verdict import sentence, version
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -24,26 +24,52 @@ _LEAST = 0.005  # probability below which a candidate without a selected effect 
 def _environment() -> Environment:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    made = Environment(loader=PackageLoader("tendonlab.report"), autoescape=True, undefined=StrictUndefined,
-                       trim_blocks=True, lstrip_blocks=True)  # fmt: skip
+    made = Environment(
+        loader=PackageLoader("tendonlab.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     made.filters |= {
-        "number": numbers.number, "percent": numbers.percent, "probability": numbers.probability,
-        "interval": numbers.interval, "span": numbers.span, "unit": numbers.unit_text, "words": words.words,
-        "phrase": words.phrase, "capital": words.capital, "listing": words.listing, "plainly": _plainly,
+        "number": numbers.number,
+        "percent": numbers.percent,
+        "probability": numbers.probability,
+        "percent_span": numbers.percent_span,
+        "span": numbers.span,
+        "unit": numbers.unit_text,
+        "words": words.words,
+        "phrase": words.phrase,
+        "capital": words.capital,
+        "listing": words.listing,
+        "plainly": _plainly,
         "element": words.element_words,
-    }  # fmt: skip
+    }
     made.globals |= {"parameter_words": words.parameter_words, "width": _width}
     return made
 
 
 def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
-    """The text of report.html: everything inline, all text escaped. `pictures` is what `report.figures.draw_all` gives."""
-    return _environment().get_template("report.html.j2").render(
-        why=diagnosis, sentence=sentence(diagnosis), certainty=certainty(diagnosis), version=version(),
-        verdicts=words.VERDICTS, replays=words.REPLAYS, facts=_facts(diagnosis), rows=_gap_rows(diagnosis),
-        regimes=_regimes(diagnosis), findings=_listed(diagnosis), runs=_runs(diagnosis), side=_side(diagnosis),
-        most=_where_in_words(diagnosis), pictures={name: picture.inline() for name, picture in pictures.items()},
-    )  # fmt: skip
+    """The text of report.html: everything inline, all text escaped. `pictures` comes from `report.figures.draw_all`."""
+    return (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            why=diagnosis,
+            sentence=sentence(diagnosis),
+            version=version(),
+            most=_where_in_words(diagnosis),
+            verdicts=words.VERDICTS,
+            replays=words.REPLAYS,
+            facts=_facts(diagnosis),
+            rows=_gap_rows(diagnosis),
+            regimes=_regimes(diagnosis),
+            findings=_listed(diagnosis),
+            runs=_runs(diagnosis),
+            side=_side(diagnosis),
+            pictures={name: picture.inline() for name, picture in pictures.items() if name != "effects"},
+        )
+    )
 
 
 def effects_table(diagnosis: Diagnosis) -> str:
@@ -54,23 +80,31 @@ def effects_table(diagnosis: Diagnosis) -> str:
 
 def _listed(diagnosis: Diagnosis) -> list[Any]:
     likely = [found for found in diagnosis.effects if found.probability >= _LEAST or found.name in diagnosis.selected]
-    return likely[:_SHOWN] or list(diagnosis.effects[:3])
+    kept = [found for place, found in enumerate(likely) if place < _SHOWN or found.name in diagnosis.selected]
+    return kept or list(diagnosis.effects[:3])
 
 
 def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
     """(value, what it is, detail) of the figures below the headline; those without a value are left out."""
-    facts = [(numbers.probability(diagnosis.verdict_probability[diagnosis.verdict]),
-              f"probability of “{words.VERDICTS[diagnosis.verdict].lower()}”",
-              "calibrated" if diagnosis.calibrated else "not yet calibrated")]  # fmt: skip
-    for key, title in (("from_nominal", "of the held-out gap removed, from nominal"),
-                       ("from_refitted", "of the held-out gap removed, beyond tuning")):  # fmt: skip
+    facts = [
+        (
+            numbers.probability(diagnosis.verdict_probability[diagnosis.verdict]),
+            f"probability of “{words.VERDICTS[diagnosis.verdict].lower()}”",
+            "calibrated" if diagnosis.calibrated else "not yet calibrated",
+        )
+    ]
+    for key, title in (
+        ("from_nominal", "of the held-out gap removed, from nominal"),
+        ("from_refitted", "of the held-out gap removed, beyond tuning"),
+    ):
         found = diagnosis.shrinkage[key]
         if found is not None and found.get("value") is not None and (key == "from_nominal" or diagnosis.selected):
             bounds = found.get("ci95")
-            detail = f"95 % interval {numbers.percent(bounds[0])} to {numbers.percent(bounds[1])}" if bounds else ""
+            detail = f"95 % interval {numbers.percent_span(bounds)}" if bounds is not None else ""
             facts.append((numbers.percent(found["value"]), title, detail))
     if diagnosis.explained is not None and diagnosis.selected:
-        facts.append((numbers.percent(diagnosis.explained), "of the excess mean square explained", "beyond the noise floor"))
+        share = numbers.percent(diagnosis.explained)
+        facts.append((share, "of the excess mean square explained", "beyond the noise floor"))
     return facts
 
 
@@ -95,28 +129,31 @@ def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     return rows
 
 
-def _where_in_words(diagnosis: Diagnosis) -> list[str]:
-    """The largest entry of each list of `where`, as half a sentence each."""
+def _where_in_words(diagnosis: Diagnosis) -> str:
+    """The largest entry of each list of `where`, in one sentence; empty where nothing stands out."""
     parts = []
     if elements := diagnosis.where["elements"]:
         first = max(elements, key=lambda entry: entry["probability"])
-        parts.append(f"the {words.element_words(first['element'])} (probability {numbers.probability(first['probability'])})")
+        sure = numbers.probability(first["probability"])
+        parts.append(f"arises most likely in the {words.element_words(first['element'])} (probability {sure})")
     if signals := diagnosis.where["signals"]:
         first = max(signals, key=lambda entry: entry["share"])
-        parts.append(f"the {words.words(first['signal'])} ({numbers.percent(first['share'])} of the excess)")
+        share = numbers.percent(first["share"])
+        parts.append(f"shows most in the {words.words(first['signal'])} ({share} of the excess)")
     if regimes := _regimes(diagnosis):
         first = max(regimes, key=lambda entry: entry["share"] or 0.0)
-        parts.append(f"{first['text']} ({numbers.percent(first['share'])} of the excess)")
-    return parts
+        parts.append(f"is concentrated at {first['text']} ({numbers.percent(first['share'])} of the excess)")
+    return f"What tuning leaves of the gap {words.listing(parts)}." if parts else ""
 
 
 def _runs(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Per held-out experiment: the gap of each stage in noise floors and its shrinkage by the selected effects."""
     rows = []
-    for name, row in diagnosis.held_out.to_dict(orient="index").items():
-        before, after = row["refitted"], row["with_effect"]
-        known = before is not None and after is not None and before > 0
-        rows.append({"name": str(name), **row, "shrinkage": 1.0 - after / before if known else None})
+    for name, row in diagnosis.held_out.iterrows():
+        nominal, before, after = (float(row[stage]) for stage in words.STAGES)
+        shrinkage = 1.0 - after / before if before > 0 else None
+        entry = {"nominal": nominal, "refitted": before, "with_effect": after}
+        rows.append({"name": str(name), "shrinkage": shrinkage, **entry})
     return rows
 
 
@@ -126,7 +163,8 @@ def _side(diagnosis: Diagnosis) -> dict[str, Any] | None:
     frame = diagnosis.table.frame
     frame = frame.reset_index() if frame.index.name is not None else frame
     cells = [[_cell(value) for value in row] for row in frame.itertuples(index=False, name=None)]
-    return {"title": diagnosis.table.title, "note": diagnosis.table.note, "columns": list(frame.columns), "cells": cells}
+    texts = {"title": diagnosis.table.title, "note": diagnosis.table.note}
+    return texts | {"columns": [str(column) for column in frame.columns], "cells": cells}
 
 
 def _cell(value: Any) -> tuple[str, bool]:

@@ -67,16 +67,17 @@ def _effect(diagnosis: Diagnosis) -> str:
     names = diagnosis.selected
     if not names:
         return f"An unmodelled effect of the library explains the gap {_aside(diagnosis)}."
-    count = "An unmodelled effect explains" if len(names) == 1 else f"{_COUNTS.get(len(names), len(names))} "
-    count += "" if len(names) == 1 else "unmodelled effects explain"
-    tail = _shrinks(diagnosis, "from_refitted", f"adding {'it' if len(names) == 1 else 'them'} shrinks")
-    return f"{count} the gap: {listing(map(phrase, names))} {_aside(diagnosis)}{tail}."
+    one = len(names) == 1
+    several = f"{_COUNTS.get(len(names), len(names))} unmodelled effects explain"
+    opening = "An unmodelled effect explains" if one else several
+    tail = _shrinks(diagnosis, "from_refitted", f"adding {'it' if one else 'them'} shrinks")
+    return f"{opening} the gap: {listing(map(phrase, names))} {_aside(diagnosis)}{tail}."
 
 
 def _unknown(diagnosis: Diagnosis) -> str:
     if not diagnosis.selected:
         return f"A gap remains after tuning that no effect of the library explains {_aside(diagnosis)}."
-    verb = "is" if len(diagnosis.selected) == 1 else "are"
-    share = "" if diagnosis.explained is None else f" and explain{'s' * (verb == 'is')} {percent(diagnosis.explained)} of it"
-    found = listing(map(phrase, diagnosis.selected))
-    return f"The library explains only a part of the gap {_aside(diagnosis)}: {found} {verb} established{share}, the rest is unknown."
+    are, explain = ("is", "explains") if len(diagnosis.selected) == 1 else ("are", "explain")
+    share = "" if diagnosis.explained is None else f" and {explain} {percent(diagnosis.explained)} of the excess error"
+    found = f"{listing(map(phrase, diagnosis.selected))} {are} established{share}"
+    return f"The library explains only a part of the gap {_aside(diagnosis)}: {found}, the rest is unknown."

@@ -57,7 +57,7 @@ REPLAYS = {
     "free": "free run on the logged inputs",
     "inverse": "torque predicted from the measured motion",
 }
-_PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "bowden": "Bowden"}
+_PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "bowden": "Bowden", "ar": "AR", "rms": "RMS"}
 _RATES = {"velocity": 1, "speed": 1, "acceleration": 2}
 _COORDINATES = {"time": "s", "t": "s", "frequency": "Hz", "temperature": "degC"}
 
@@ -102,7 +102,7 @@ def listing(items: Iterable[str], *, last: str = "and") -> str:
 
 
 def unit_of(coordinate: str, units: Mapping[str, str]) -> str:
-    """The unit of a signal or of a coordinate derived from one ("joint_velocity" from "joint_angle"); empty if not known."""
+    """The unit of a signal or of the rate of one ("joint_velocity" from "joint_angle"); empty if not known."""
     if coordinate in units or coordinate in _COORDINATES:
         return units.get(coordinate, _COORDINATES.get(coordinate, ""))
     stem, _, rate = coordinate.rpartition("_")

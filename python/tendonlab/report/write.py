@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def write_report(diagnosis: Diagnosis, out: Path, *, figures: bool = True) -> Path:
-    """Write report.html and report.json into `out`, and each figure as PNG and SVG if `figures`; the path of report.html."""
+    """Write report.html and report.json, and each figure as PNG and SVG if `figures`; the path of report.html."""
     from tendonlab.report.figures import draw_all
     from tendonlab.report.page import page
 

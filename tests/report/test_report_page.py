@@ -1,0 +1,155 @@
+"""report.html: one file that needs nothing else, says the verdict and escapes what users wrote."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tendonlab.diagnose.result import Diagnosis, SideTable
+from tendonlab.report import effects_table
+from tendonlab.report.figures import LARGEST_SVG, embed
+
+NASTY = "<script>alert(\"rig\")</script> & $x$ 'quoted'"
+
+
+class Page(HTMLParser):
+    """Checks that elements nest; collects text, ids and the targets of references."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.text: list[str] = []
+        self.ids: list[str] = []
+        self.targets: list[str] = []
+        self.scripts = 0
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_startendtag(tag, attrs)
+        if tag not in {"meta", "br", "img"}:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.scripts += tag == "script"
+        self.ids += [value or "" for name, value in attrs if name == "id"]
+        self.targets += [value or "" for name, value in attrs if name in {"href", "src"}]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open, f"</{tag}> without a start"
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text.append(data)
+
+
+def read(diagnosis: Diagnosis, folder: Path) -> tuple[str, Page]:
+    text = diagnosis.report(folder, figures=False).read_text(encoding="utf-8")
+    return text, Page(text)
+
+
+def test_page_is_well_formed_and_self_contained(diagnosis: Diagnosis, tmp_path: Path) -> None:
+    text, page = read(diagnosis, tmp_path)
+    assert page.open == []
+    assert not re.search(r"https?:|//\w+\.|@import|url\((?!#)", text)
+    assert all(target.startswith(("#", "data:image/png;base64,")) for target in page.targets)
+    assert len(page.ids) == len(set(page.ids))
+    assert {target[1:] for target in page.targets if target.startswith("#")} <= set(page.ids)
+    assert set(re.findall(r"url\(#([^)]+)\)", text)) <= set(page.ids)
+
+
+def test_page_holds_the_sentence_and_the_four_answers(diagnosis: Diagnosis, tmp_path: Path) -> None:
+    words = " ".join(read(diagnosis, tmp_path)[1].text)
+    assert diagnosis.sentence in words
+    for heading in ("Where", "Which", "How far", "What next", "Warnings", "How this was computed"):
+        assert heading in words
+    assert ("not yet calibrated" in words) is not diagnosis.calibrated
+
+
+def test_files_written(with_effect: Diagnosis, tmp_path: Path) -> None:
+    assert with_effect.report(tmp_path / "a" / "b") == tmp_path / "a" / "b" / "report.html"
+    figures = {f"{name}.{kind}" for name in ("gap", "overlay", "where", "effects") for kind in ("svg", "png")}
+    assert {path.name for path in (tmp_path / "a" / "b").iterdir()} == figures | {"report.html", "report.json"}
+    with_effect.report(tmp_path / "bare", figures=False)
+    assert {path.name for path in (tmp_path / "bare").iterdir()} == {"report.html", "report.json"}
+
+
+def test_the_same_diagnosis_gives_the_same_bytes(with_effect: Diagnosis, tmp_path: Path) -> None:
+    first, second = with_effect.report(tmp_path / "a"), with_effect.report(tmp_path / "b")
+    for path in first.parent.iterdir():
+        assert path.read_bytes() == (second.parent / path.name).read_bytes(), path.name
+
+
+def test_text_of_users_is_escaped(with_effect: Diagnosis, tmp_path: Path) -> None:
+    run = with_effect.overlay
+    assert run is not None
+    signals = {
+        stage: {NASTY: getattr(run, stage)["joint_angle"]}
+        for stage in ("measured", "nominal", "refitted", "with_effect")
+    }
+    nasty = replace(
+        with_effect,
+        dataset=NASTY,
+        warnings=(NASTY,),
+        gap={NASTY: with_effect.gap["joint_angle"]},
+        units={NASTY: NASTY},
+        overlay=replace(run, name=NASTY, floor={NASTY: 1e-3}, **signals),
+        next_experiments=({"description": NASTY, "separates": [NASTY], "expected_gain": None},),
+        table=SideTable(title=NASTY, note=NASTY, frame=pd.DataFrame({NASTY: [NASTY]})),
+        details={NASTY: NASTY},
+    )
+    text, page = read(nasty, tmp_path)
+    assert page.scripts == 0
+    assert page.open == []
+    assert "<script" not in text
+    assert NASTY in " ".join(page.text)
+    assert "<script" not in nasty._repr_html_()
+
+
+def test_a_large_figure_is_embedded_as_png() -> None:
+    def shown(path: str) -> str:
+        return embed(f'<svg width="1"><path d="{path}"/></svg>', lambda: b"png", name="a", alt="what <it> shows")
+
+    assert shown("M 0 0").startswith("<svg")
+    large = shown("M 0 0 " * LARGEST_SVG)
+    assert large.startswith("<img")
+    assert "data:image/png;base64,cG5n" in large
+    assert "what &lt;it&gt; shows" in large
+
+
+def test_empty_results_still_make_a_page(with_effect: Diagnosis, tmp_path: Path) -> None:
+    bare = replace(
+        with_effect, verdict="unknown_effect", gap={}, where={"signals": [], "elements": [], "regimes": []}, effects=(),
+        sets=(), selected=(), explained=None, shrinkage={"from_nominal": None, "from_refitted": None}, overlay=None,
+        where_map=(), held_out=pd.DataFrame(), indistinguishable=(), invisible=(), next_experiments=(), table=None,
+    )  # fmt: skip
+    words = " ".join(read(bare, tmp_path)[1].text)
+    assert "No output could be scored" in words
+    assert "no effect of the library explains" in words
+
+
+def test_a_held_out_run_without_a_gap_has_no_shrinkage(with_effect: Diagnosis, tmp_path: Path) -> None:
+    table = pd.DataFrame({"nominal": [2.0], "refitted": [0.0], "with_effect": [np.nan]}, index=["quiet"])
+    text, _ = read(replace(with_effect, held_out=table), tmp_path)
+    assert '<td>quiet</td><td class="n">2</td><td class="n">0</td><td class="n">–</td><td class="n">–</td>' in text
+
+
+def test_notebook_form_is_short(with_effect: Diagnosis) -> None:
+    assert repr(with_effect) == "Diagnosis('rig-42', verdict='effect', selected=['joint:stribeck'])"
+    html = with_effect._repr_html_()
+    assert with_effect.sentence in html
+    assert effects_table(with_effect) in html
+
+
+@pytest.mark.parametrize("count", [3, 40])
+def test_a_selected_effect_is_listed_however_many_candidates_there_are(with_effect: Diagnosis, count: int) -> None:
+    template = with_effect.effects[0]
+    many = tuple(replace(template, effect=f"law_{index}", probability=0.5) for index in range(count))
+    chosen = many[-1].name
+    assert f"<code>{chosen}</code>" in effects_table(replace(with_effect, effects=many, selected=(chosen,)))

@@ -1,0 +1,93 @@
+"""The words and numbers of the report."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tendonlab.diagnose.result import Diagnosis
+from tendonlab.report import numbers, words
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("joint:stribeck", "Stribeck friction at the joint"),
+        ("sensor.joint_angle:delay", "delay in the joint angle sensor"),
+        ("contact:load_dependence", "load-dependent friction at the pulley contact"),
+        ("load:offset", "constant disturbance on the load"),
+        ("actuation:offset", "constant offset in the actuation"),
+        ("spring_box:odd_law", "odd law in the spring box"),
+        ("backlash", "backlash"),
+    ],
+)
+def test_effects_in_words(name: str, expected: str) -> None:
+    assert words.phrase(name) == expected
+
+
+def test_small_words() -> None:
+    assert words.words("joint_stribeck_velocity") == "joint Stribeck velocity"
+    assert words.parameter_words("joint_stribeck_velocity", element="joint") == "Stribeck velocity"
+    assert words.capital("joint") == "Joint"
+    assert [words.listing(items) for items in (["a"], ["a", "b"], ["a", "b", "c"], [])] == [
+        "a",
+        "a and b",
+        "a, b and c",
+        "",
+    ]
+    units = {"joint_angle": "rad", "cable_position": "m"}
+    shown = [words.unit_of(name, units) for name in ("joint_angle", "joint_velocity", "cable_speed", "time", "odd")]
+    assert shown == ["rad", "rad/s", "m/s", "s", ""]
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (0.0502, "0.0502"), (0.05, "0.05"), (1234.0, "1230"), (-0.0, "0"), (-2.5, "−2.5"), (1e-6, "1×10⁻⁶"),
+        (2.5e7, "2.5×10⁷"), (0.99999, "1"), (99999.0, "1×10⁵"), (float("nan"), "–"), (None, "–"),
+    ],
+)  # fmt: skip
+def test_numbers(value: float | None, expected: str) -> None:
+    assert numbers.number(value) == expected
+
+
+def test_shares_and_probabilities() -> None:
+    assert numbers.percent(0.91, [0.88, 0.94]) == "91 % (88–94 %)"
+    assert numbers.percent(0.6, [-0.05, 0.7]) == "60 % (−5 to 70 %)"
+    assert [numbers.percent(value) for value in (0.996, 1.0, -0.001, float("nan"))] == ["99.6 %", "100 %", "0 %", "–"]
+    assert [numbers.probability(value) for value in (1.0, 0.934, 0.001, 0.0)] == ["> 0.99", "0.93", "< 0.01", "0.00"]
+
+
+def test_units() -> None:
+    assert numbers.unit_text("kg*m^2") == "kg·m²"
+    assert numbers.unit_text("N*m*s/rad") == "N·m·s/rad"
+    assert numbers.unit_text("1") == ""
+    assert numbers.prefixed([0.031], "rad") == (pytest.approx(1e3), "mrad")
+    assert numbers.prefixed([2.0], "N*m") == (1.0, "N·m")
+    assert numbers.prefixed([2e-5], "kg*m^2") == (1.0, "kg·m²")
+
+
+def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
+    expected = {
+        "effect": "An unmodelled effect explains the gap: Stribeck friction at the joint (probability 0.93, not yet "
+        "calibrated); adding it shrinks the held-out gap by 91 % (88–94 %).",
+        "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor "
+        "(probability 0.97).",
+        "parameters_only": "Only parameter values were off, and no effect is missing (probability 0.90, not yet "
+        "calibrated); re-identifying them shrinks the held-out gap by 94 % (91–96 %).",
+        "unknown_effect": "The library explains only a part of the gap (probability 0.88, not yet calibrated): "
+        "presliding friction at the joint and load-dependent friction at the joint are established and explain 71 % "
+        "of the excess error, the rest is unknown.",
+    }
+    assert diagnosis.sentence == expected[diagnosis.verdict]
+
+
+def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> None:
+    nothing = {"from_nominal": None, "from_refitted": None}
+    both = replace(with_effect, selected=("joint:stribeck", "joint:presliding"), calibrated=True, shrinkage=nothing)
+    assert both.sentence == (
+        "Two unmodelled effects explain the gap: Stribeck friction at the joint and presliding friction at the joint "
+        "(probability 0.04)."
+    )
+    assert "probability 0.21" in replace(both, sets=()).sentence  # the less certain of the two
