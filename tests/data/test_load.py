@@ -183,13 +183,17 @@ def test_what_is_absent_is_zero_and_said(draft, write):
 
 
 def test_doubts_are_said_in_warnings(draft, write):
-    draft.toml["signals"]["joint_torque"] = {"column": "u"}
+    draft.toml["signals"]["motor_current"] = {"column": "u", "unit": "A"}
+    draft.toml["experiments"][0]["conditions"] = {"gravity_torqe": 0.4, "temperature": 31.0}
     draft.toml["signals"]["joint_angel"] = {"column": "q"}
     for experiment in draft.toml["experiments"]:
         experiment["split"] = "train"
-    text = "\n".join(load(write(draft)).warnings)
-    assert "'joint_angel' is unknown to rigid_joint and kept as a covariate; 'joint_angle' has nearly that name" in text
-    assert "no experiment is held out" in text
+    kept = "is unknown to rigid_joint and kept as a covariate"
+    assert load(write(draft)).warnings == (
+        f"signal 'joint_angel' {kept}; 'joint_angle' has nearly that name",
+        f"condition 'gravity_torqe' {kept}; 'gravity_torque' has nearly that name",
+        "no experiment is held out: all of them are in the training set",
+    )
 
 
 def test_without_a_split_the_library_splits_and_says_so(draft, write):

@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 
 from tendonlab.catalog import SystemInfo
-
 from tendonlab.data.dataset import Controller, SignalSpec
 from tendonlab.data.names import expected_one_of
 from tendonlab.data.schema import Table

@@ -17,6 +17,7 @@ from tendonlab.errors import DatasetError
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+
     from tendonlab.system import System
 
 
@@ -61,7 +62,7 @@ class SignalSpec:
     si_unit: str = "1"
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)  # frames have no plain equality
 class Experiment:
     """One record. `data` is indexed by time "t", s, with one float column a signal, SI; outputs may hold NaN.
 
@@ -88,7 +89,7 @@ class Experiment:
         return float(self.time[-1] - self.time[0])
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)  # frames have no plain equality
 class Dataset:
     """A checked dataset. `dataset["sweep-1"]` is one experiment; `warnings` says in words what was assumed."""
 

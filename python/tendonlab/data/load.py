@@ -8,9 +8,10 @@ from tendonlab import catalog
 from tendonlab.data.controller import check_controller, read_controller
 from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
 from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
+from tendonlab.data.names import nearest
 from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
 from tendonlab.data.schema import FILE, read_toml
-from tendonlab.data.signals import doubts, read_signals
+from tendonlab.data.signals import read_signals
 from tendonlab.errors import DatasetError
 
 
@@ -45,7 +46,7 @@ def load(path: str | PathLike[str]) -> Dataset:
     command_is_effort = command is None or command.si_unit == catalog.unit("effort", axis)
     warnings = [
         *assumptions(top, parameters, command_is_effort=command_is_effort),
-        *doubts(signals.values(), info),
+        *_doubts(experiments, signals.values(), info=info),
         *_split_notes(experiments, given=split_is_given(top)),
     ]
     return Dataset(
@@ -87,6 +88,22 @@ def _require_motion(
 
 def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:
     return all(bool((frame == frame.iloc[0]).all()) for frame in (experiment.data[name] for experiment in experiments))
+
+
+def _doubts(experiments: Iterable[Experiment], signals: Iterable[SignalSpec], *, info: catalog.SystemInfo) -> list[str]:
+    """A warning for every covariate whose name is nearly that of a signal or parameter of the system."""
+    known = [signal.name for signal in (*info.inputs, *info.outputs)]
+    parameters = [parameter.name for parameter in info.parameters]
+    covariates = {
+        f"signal {spec.name!r}": nearest(spec.name, known, likeness=0.8) for spec in signals if spec.role == "covariate"
+    }
+    conditions = {name for experiment in experiments for name in experiment.conditions if name not in parameters}
+    covariates |= {f"condition {name!r}": nearest(name, parameters, likeness=0.8) for name in sorted(conditions)}
+    return [
+        f"{what} is unknown to {info.kind} and kept as a covariate; {match!r} has nearly that name"
+        for what, match in covariates.items()
+        if match is not None
+    ]
 
 
 def _split_notes(experiments: tuple[Experiment, ...], *, given: bool) -> list[str]:

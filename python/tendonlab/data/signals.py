@@ -1,9 +1,6 @@
 """The [signals] tables: role, unit and holding of each signal."""
 
-from collections.abc import Iterable
-
 from tendonlab.catalog import Signal, SystemInfo, unit
-
 from tendonlab.data.dataset import Controller, SignalSpec
 from tendonlab.data.names import nearest
 from tendonlab.data.schema import Table
@@ -30,18 +27,6 @@ def read_signals(top: Table, info: SystemInfo, *, axis: str, controller: Control
         names = ", ".join(output.name for output in info.outputs)
         raise top.error("signals", f"no output of {info.kind} is measured; expected at least one of {names}")
     return specs
-
-
-def doubts(signals: Iterable[SignalSpec], info: SystemInfo) -> list[str]:
-    """A warning for every covariate whose name is nearly that of a signal of the system."""
-    known = [signal.name for signal in (*info.inputs, *info.outputs)]
-    covariates = [spec.name for spec in signals if spec.role == "covariate"]
-    matches = {name: nearest(name, known) for name in covariates}
-    return [
-        f"signal {name!r} is unknown to {info.kind} and kept as a covariate; {match!r} has nearly that name"
-        for name, match in matches.items()
-        if match is not None
-    ]
 
 
 def _read_signal(table: Table, name: str, *, role: str, expected: str | None, hold: bool) -> SignalSpec:
