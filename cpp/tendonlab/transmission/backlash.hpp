@@ -17,7 +17,7 @@ struct Backlash {
   T backlash;
 
   static constexpr auto parameters() {
-    return std::tuple{parameter(&Backlash::backlash, "backlash", Dimension::displacement, Purpose::amplitude, 0.01, 0.0,
+    return std::tuple{parameter(&Backlash::backlash, "backlash", Dimension::displacement, Purpose::amplitude, 0.5, 0.0,
                                 inf, "whole width of the gap")};
   }
   template <class S>
