@@ -153,3 +153,15 @@ def test_a_selected_effect_is_listed_however_many_candidates_there_are(with_effe
     many = tuple(replace(template, effect=f"law_{index}", probability=0.5) for index in range(count))
     chosen = many[-1].name
     assert f"<code>{chosen}</code>" in effects_table(replace(with_effect, effects=many, selected=(chosen,)))
+
+
+def test_caption_says_what_the_overlay_leaves_out(with_effect: Diagnosis, tmp_path: Path) -> None:
+    run = with_effect.overlay
+    assert run is not None
+    names = [f"tension_{index}" for index in range(6)]
+    swing = np.sin(60.0 * run.time)
+    parts = {stage: dict.fromkeys(names, swing) for stage in ("measured", "nominal", "refitted", "with_effect")}
+    long = replace(with_effect, overlay=replace(run, floor=dict.fromkeys(names, 0.1), **parts))
+    text, _ = read(long, tmp_path)
+    assert re.search(r"Shown: 0 to [\d.]+ s of the run.* The 4 outputs that carry most of the gap are drawn", text)
+    assert "Shown:" not in read(with_effect, tmp_path)[0]

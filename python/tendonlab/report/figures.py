@@ -30,7 +30,7 @@ _ALTS = {
     "effects": "Candidate effects by probability",
 }
 LARGEST_SVG = 400_000  # bytes; beyond, the page embeds the PNG
-_MOST = 4  # outputs and where maps drawn; the tables list all
+MOST_DRAWN = 4  # outputs and where maps drawn; the tables list all
 _PAGE_COLOURS = {
     INK: "var(--ink)",
     MUTED: "var(--muted)",
@@ -109,7 +109,9 @@ def _overlay(diagnosis: Diagnosis) -> Figure | None:
     run = diagnosis.overlay
     if run is None or not run.measured:
         return None
-    signals = list(run.measured)[:_MOST]
+    shares = {entry["signal"]: entry["share"] for entry in diagnosis.where["signals"]}
+    carrying = sorted(run.measured, key=lambda signal: -(shares.get(signal) or 0.0))[:MOST_DRAWN]
+    signals = [signal for signal in run.measured if signal in carrying]
     figure = Figure(figsize=(6.2, 0.5 + 2.8 * len(signals)), layout="constrained")
     grid = figure.subplots(2 * len(signals), 1, sharex=True, squeeze=False, height_ratios=[2.1, 1] * len(signals))
     axes: list[Axes] = list(grid[:, 0])
@@ -128,7 +130,7 @@ def _overlay(diagnosis: Diagnosis) -> Figure | None:
 def _where(diagnosis: Diagnosis) -> Figure | None:
     from matplotlib.figure import Figure
 
-    maps = diagnosis.where_map[:_MOST]
+    maps = diagnosis.where_map[:MOST_DRAWN]
     if not maps:
         return None
     stages = ("refitted", "with_effect") if diagnosis.selected else ("refitted",)

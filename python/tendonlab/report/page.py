@@ -58,6 +58,7 @@ def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
             why=diagnosis,
             sentence=sentence(diagnosis),
             version=version(),
+            shown_part=_shown_part(diagnosis),
             most=_where_in_words(diagnosis),
             verdicts=words.VERDICTS,
             replays=words.REPLAYS,
@@ -70,6 +71,19 @@ def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
             pictures={name: picture.inline() for name, picture in pictures.items() if name != "effects"},
         )
     )
+
+
+def _shown_part(diagnosis: Diagnosis) -> str:
+    """What the overlay leaves out, for its caption; empty where it shows all."""
+    from tendonlab.plot.runs import telling_window
+    from tendonlab.report.figures import MOST_DRAWN
+
+    run = diagnosis.overlay
+    if run is None or not run.measured:
+        return ""
+    window, left_out = telling_window(run), len(run.measured) - MOST_DRAWN
+    part = f" Shown: {numbers.span(window)} s of the run, where the refitted residual is largest." if window else ""
+    return part + (f" The {MOST_DRAWN} outputs that carry most of the gap are drawn." if left_out > 0 else "")
 
 
 def effects_table(diagnosis: Diagnosis) -> str:
