@@ -362,3 +362,10 @@ def test_withheld_truth_is_never_opened(draft, write):
     for name in ("sealed.toml", "expected.toml"):
         (folder / name).write_bytes(b"\xff not toml")
     assert load(folder).name == "tiny"
+
+
+def test_a_dataset_gives_its_simulator(draft, write):
+    draft.toml["system"]["parameters"]["coulomb"] = {"value": 0.07}
+    system = load(write(draft)).system()
+    assert (system.kind, system.axis, system.effects) == ("rigid_joint", "rotary", ("joint:coulomb", "joint:viscous"))
+    assert system.parameters["coulomb"] == 0.07
