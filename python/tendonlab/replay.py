@@ -83,8 +83,8 @@ def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
     core = _core.Experiment(
         kind=system.kind,
         time=time.tolist(),
-        inputs=_inputs(data, time, system, replay),
-        loop=_loop(data, time, system, replay, measured),
+        inputs=_inputs(experiment, system, replay),
+        loop=_loop(experiment, system, replay, measured),
         position=position,
         velocity=velocity,
     )
@@ -131,12 +131,13 @@ def _port_frame(ports: np.ndarray, system: System, index: pd.Index) -> pd.DataFr
     return pd.DataFrame(ports.reshape(-1, ports.shape[-1]).T, index=index, columns=columns)
 
 
-def _inputs(data: pd.DataFrame, time: np.ndarray, system: System, replay: Replay) -> list[_core.Signal]:
+def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_core.Signal]:
+    data, time = experiment.data, experiment.time
     signals = []
     for k, given in enumerate(system.info.inputs):
         if given.name in data.columns:
             values = data[given.name].to_numpy(dtype=float)
-            held = data.attrs.get("hold", {}).get(given.name, given.hold)
+            held = experiment.holds.get(given.name, given.hold)
             signals.append(hold(time, values) if held else linear(time, values))
         elif given.required and not (k == 0 and replay.kind == "controller"):
             raise DatasetError(f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it")
@@ -145,7 +146,7 @@ def _inputs(data: pd.DataFrame, time: np.ndarray, system: System, replay: Replay
     return signals
 
 
-def _loop(data: pd.DataFrame, time: np.ndarray, system: System, replay: Replay, measured: np.ndarray) -> _core.Loop:
+def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.ndarray) -> _core.Loop:
     if replay.kind == "free":
         return _core.Loop()
     names = [s.name for s in system.info.outputs]
@@ -153,20 +154,20 @@ def _loop(data: pd.DataFrame, time: np.ndarray, system: System, replay: Replay, 
         c = names.index(str(replay.output))
         return _core.Loop(
             kind="injection", axis=system.info.outputs[c].axis or 0, output=c, proportional=replay.kp, derivative=replay.kd,
-            reference_weight=1.0, limit=np.inf, sample_time=0.0, reference=smoothed(time, measured[c]),
+            reference_weight=1.0, limit=np.inf, sample_time=0.0, reference=smoothed(experiment.time, measured[c]),
             disturbance=_core.Signal(),
         )  # fmt: skip
     controller = system.controller
     if controller is None:
         raise ParameterError("replay 'controller': the system knows no controller")
-    return _controller_loop(data, time, system, controller)
+    return _controller_loop(experiment, system, controller)
 
 
-def _controller_loop(data: pd.DataFrame, time: np.ndarray, system: System, controller: Controller) -> _core.Loop:
+def _controller_loop(experiment: Experiment, system: System, controller: Controller) -> _core.Loop:
+    data, time, held = experiment.data, experiment.time, experiment.holds
     c = [s.name for s in system.info.outputs].index(controller.measured)
     cascade = controller.kind == "cascade"
     reference = data[controller.reference].to_numpy(dtype=float)
-    held = data.attrs.get("hold", {})
     differentiated = not cascade and controller.derivative_on == "error" and controller.sample_time == 0.0
     # A reference that is differentiated needs a slope without jumps; else the values between samples are the contract's.
     make = hold if held.get(controller.reference, False) else smooth if differentiated else linear

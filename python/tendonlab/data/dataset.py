@@ -67,7 +67,8 @@ class Experiment:
     """One record. `data` is indexed by time "t", s, with one float column a signal, SI; outputs may hold NaN.
 
     `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
-    known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats."""
+    known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats;
+    `holds`: whether a signal is held between its samples."""
 
     name: str
     data: pd.DataFrame = field(repr=False)
@@ -77,6 +78,7 @@ class Experiment:
     conditions: dict[str, float] = field(default_factory=dict)
     add: dict[str, float] = field(default_factory=dict)
     initial: dict[str, float] = field(default_factory=dict)
+    holds: dict[str, bool] = field(default_factory=dict, repr=False)
 
     @property
     def time(self) -> np.ndarray:

@@ -94,6 +94,7 @@ def _read_experiment(table: Table, split: str, context: Context) -> Experiment:
     initial = table.numbers("initial")
     _check_initial(table.table("initial", optional=True), initial, context.info)
     return Experiment(
+        holds={signal: spec.hold for signal, spec in context.signals.items()},
         name=table.text("name"),
         split=split,
         conditions=fixed,
