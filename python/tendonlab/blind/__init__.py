@@ -7,6 +7,5 @@ The generator shares only the data format with the rest of tendonlab: no law, no
 from .draw import draw
 from .run import run
 from .score import Score, score
-from .twin import make_twin
 
-__all__ = ["Score", "draw", "make_twin", "run", "score"]
+__all__ = ["Score", "draw", "run", "score"]

@@ -18,7 +18,11 @@ def add_parser(subparsers: Any) -> None:
     an exit code.
     """
     blind = subparsers.add_parser("blind", help="check the diagnosis on synthetic rigs whose truth is sealed")
-    verbs = blind.add_subparsers(dest="verb", required=True, metavar="draw|run|score")
+    _add_verbs(blind)
+
+
+def _add_verbs(parser: argparse.ArgumentParser) -> None:
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="draw|run|score")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth into OUT/sealed")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -66,11 +70,7 @@ def _score(given: argparse.Namespace) -> int:
 
 def main() -> int:
     """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|score."""
-    parser = argparse.ArgumentParser(prog="python -m tendonlab")
-    add_parser(parser.add_subparsers(dest="command", required=True))
+    parser = argparse.ArgumentParser(prog="python -m tendonlab.blind")
+    _add_verbs(parser)
     given = parser.parse_args()
     return int(given.run(given))
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

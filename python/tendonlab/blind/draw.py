@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,14 @@ DESCRIPTION = "Synthetic two-inertia cable rig under a sampled position loop, re
 
 
 def draw(
-    seed: int, count: int, out: Path | str, *, jobs: int = 2, num_samples: int = NUM_SAMPLES, step: float = FINE_STEP
+    seed: int,
+    count: int,
+    out: Path | str,
+    *,
+    jobs: int = 2,
+    num_samples: int = NUM_SAMPLES,
+    step: float = FINE_STEP,
+    progress: bool = True,
 ) -> Path:
     """Draw `count` cases into `out` and return it; about 70 % lack one effect, 15 % nothing, 15 % have wrong
     parameters only.
@@ -38,12 +46,12 @@ def draw(
     kinds = plan(seed, count)
     batches = [list(enumerate(kinds))[i : i + BATCH] for i in range(0, count, BATCH)]
     work = partial(_draw_batch, seed=seed, out=out, num_samples=num_samples, step=step)
-    with tqdm(total=count, desc="draw", unit="case") as bar:
+    with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
         if jobs <= 1:
             for batch in batches:
                 bar.update(work(batch))
         else:
-            with ProcessPoolExecutor(jobs) as pool:
+            with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
                 for done in pool.map(work, batches):
                     bar.update(done)
     return out

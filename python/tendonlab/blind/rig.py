@@ -112,7 +112,7 @@ def draw_rig(
     forms = FORMS.get(effect.partition(":")[2], ("documented",))
     experiments = session(draw, excitation=excitation or chosen, sample_time=SAMPLE_TIME, num_samples=num_samples)
     return Rig(
-        truth={name: float(f"{value:.6g}") for name, value in truth.items()},
+        truth={name: float(f"{value:.5g}") for name, value in truth.items()},
         effect=effect,
         shape=_shape(draw),
         form=min(other, len(forms) - 1) if is_other else 0,
@@ -125,6 +125,7 @@ def draw_rig(
         noise=float(np.exp(draw.uniform(np.log(0.7), np.log(1.8)))),
         target=float(np.exp(draw.uniform(np.log(1.0), np.log(6.0)))),
         seed=int(draw.integers(2**31)),
+        num_settle=min(NUM_SETTLE, num_samples),  # short records, as tests make them, settle shortly
     )
 
 
@@ -225,11 +226,8 @@ def nominal_values(rig: Rig) -> dict[str, tuple[float, float]]:
         if rig.has_bounded_error:
             error = 1.0 + float(draw.uniform(0.1, 0.2) * draw.choice([-1.0, 1.0]))
         known = name == "gear_ratio"
-        value = rig.truth[name] * (1.0 if known or rig.kind == "none" else error)
-        stated[name] = (
-            float(f"{value:.5g}") if rig.kind != "none" else value,
-            0.0 if known else float(f"{spread * value:.3g}"),
-        )
+        value = float(f"{rig.truth[name] * (1.0 if known or rig.kind == 'none' else error):.5g}")
+        stated[name] = (value, 0.0 if known else float(f"{NOMINAL_SPREAD * value:.3g}"))
     return stated
 
 

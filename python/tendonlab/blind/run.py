@@ -22,7 +22,7 @@ def command(case: Path, out: Path) -> list[str]:
     return [sys.executable, "-m", "tendonlab", "diagnose", str(case), "--out", str(out), "--no-figures"]
 
 
-def run(cases: Path | str, out: Path | str, *, jobs: int = 1) -> Path:
+def run(cases: Path | str, out: Path | str, *, jobs: int = 1, progress: bool = True) -> Path:
     """Diagnose all cases into `out`/<id>, skipping those that have a report, and return `out`/verdicts.json.
 
     A case that fails is recorded there as "failed" with the last line it wrote. Raises ValueError where `cases`
@@ -39,7 +39,8 @@ def run(cases: Path | str, out: Path | str, *, jobs: int = 1) -> Path:
     todo = [folder for folder in folders if not (out / folder.name / REPORT).exists()]
     with ThreadPoolExecutor(max(1, jobs)) as pool:
         pending = {pool.submit(_diagnose, folder, out / folder.name): folder.name for folder in todo}
-        for future in tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case"):
+        done = tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case", disable=not progress)
+        for future in done:
             message = future.result()
             if message:
                 failed[pending[future]] = message

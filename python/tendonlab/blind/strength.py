@@ -77,8 +77,24 @@ def tune(rigs: Sequence[Rig]) -> list[Strength]:
     """Find the amplitude of every rig's effect that gives its target gap/noise, within 20 % unless the physical
     limit is met.
     """
-    tuner = _Tuner(rigs)
-    search = _Search(rigs)
+    out: dict[int, Strength] = {}
+    for has_effect, search in ((True, _tune_effects), (False, _measure)):
+        rows = [i for i, rig in enumerate(rigs) if (rig.kind == "effect") == has_effect]
+        out |= dict(zip(rows, search([rigs[i] for i in rows]) if rows else [], strict=True))
+    return [out[i] for i in range(len(rigs))]
+
+
+def _measure(rigs: Sequence[Rig]) -> list[Strength]:
+    """Floor and nominal gap of rigs that lack nothing."""
+    tuner, search = _Tuner(rigs), _Search(rigs)
+    tuner.run_truth(search.amplitude)
+    before = tuner.nominal_gap()
+    return [search.strength(i, before=before[i], floor=tuner.floor[i], separation={}) for i in range(len(rigs))]
+
+
+def _tune_effects(rigs: Sequence[Rig]) -> list[Strength]:
+    tuner, search = _Tuner(rigs), _Search(rigs)
+    tuner.start()
     for _ in range(NUM_LINEAR):
         search.learn(tuner.linear(search.amplitude), search.everyone)
         search.move()
@@ -86,7 +102,7 @@ def tune(rigs: Sequence[Rig]) -> list[Strength]:
     active, current = search.everyone, tuner
     for turn in range(NUM_EXACT):
         search.learn(current.exact(search.amplitude[active]), active)
-        before, rivals = current.nominal_gap(search.amplitude[active]), separations(current, search.amplitude[active])
+        before, rivals = current.nominal_gap(), separations(current)
         for row, i in enumerate(active):
             found[int(i)] = search.strength(
                 int(i), before=before[row], floor=current.floor[row], separation=rivals[row]
@@ -152,7 +168,7 @@ class _Search:
         )
 
 
-def separations(tuner: _Tuner, amplitude: Array) -> list[dict[str, float]]:
+def separations(tuner: _Tuner) -> list[dict[str, float]]:
     """What tells each rig's effect from its rivals, nats: half the whitened sum of squares left when the rival is
     refitted instead.
 
@@ -183,10 +199,7 @@ class _Tuner:
         self.width = max(len(names) for names in self.free)
         self.refit = np.zeros((len(rigs), self.width))  # log parameter over truth
         self.expansion = self.refit.copy()
-        self.base, self.slopes = self._linearise(self.refit)
-        self.start, self.start_slopes = self.base, self.slopes
         self.floor = np.ones((len(rigs), 3))
-        self.truth, self.noise = self.base, self.base
 
     def subset(self, rows: NDArray[np.int64]) -> _Tuner:
         """The same search for some of the rigs, refit parameters kept."""
@@ -212,7 +225,11 @@ class _Tuner:
         outputs = run.outputs.reshape(3, run.time.size, len(rigs), -1)
         return np.moveaxis(outputs, 2, 0).reshape(len(rigs), 3, -1)
 
-    def _truth(self, amplitude: Array) -> Array:
+    def start(self) -> None:
+        """Readings and slopes at the true parameters, from which `linear` foretells."""
+        self.base, self.slopes = self._linearise(self.refit)
+
+    def run_truth(self, amplitude: Array) -> Array:
         parameters = [full_truth(rig, a) for rig, a in zip(self.rigs, amplitude, strict=True)]
         clean, noisy = np.split(
             self._run([*self.rigs, *self.rigs], parameters * 2, with_noise=True, with_effect=True), 2
@@ -258,16 +275,16 @@ class _Tuner:
 
     def linear(self, amplitude: Array) -> Array:
         """gap/noise as the slopes at the true parameters foretell it."""
-        residual = self._truth(amplitude) - self.start
-        step = self._step(residual, self.start_slopes, np.zeros_like(self.refit))
+        residual = self.run_truth(amplitude) - self.base
+        step = self._step(residual, self.slopes, np.zeros_like(self.refit))
         self.refit = step
-        return self._gap(residual - np.einsum("rp,rpcn->rcn", step, self.start_slopes))
+        return self._gap(residual - np.einsum("rp,rpcn->rcn", step, self.slopes))
 
     def exact(self, amplitude: Array) -> Array:
         """gap/noise after a Gauss-Newton step from the last refit with its own slopes: the least of before and
         after.
         """
-        truth = self._truth(amplitude)
+        truth = self.run_truth(amplitude)
         self.expansion = self.refit.copy()
         self.base, self.slopes = self._linearise(self.refit)
         residual = truth - self.base
@@ -277,7 +294,7 @@ class _Tuner:
         self.refit = np.where((gap < before)[:, None], after, self.refit)
         return np.minimum(gap, before)
 
-    def nominal_gap(self, amplitude: Array) -> Array:
+    def nominal_gap(self) -> Array:
         """gap/noise of the nominal simulator as the dataset states it, before any refit."""
         values = [{name: value for name, (value, _) in nominal_values(rig).items()} for rig in self.rigs]
         return self._gap(self.truth - self._run(self.rigs, values, with_effect=False))

@@ -10,7 +10,7 @@ import numpy as np
 
 from .plant import OUTPUTS
 from .rig import NUM_SAMPLES, Rig, draw_rig
-from .strength import Strength, tune
+from .strength import tune
 from .write import FINE_STEP, record, sealed_toml, write_dataset
 
 SEED = 20
@@ -42,18 +42,7 @@ def make_twin(
     if kind not in ("effect", "none", "parameters_only"):
         raise ValueError(f"kind = {kind!r}: expected 'effect', 'none' or 'parameters_only'")
     rig = _rig(kind=kind, effect=effect, seed=seed, gap_noise=gap_noise, num_samples=num_samples)
-    if kind == "effect":
-        (strength,) = tune([rig])
-    else:
-        strength = Strength(
-            amplitude=0.0,
-            gap_noise=0.0,
-            nominal_gap_noise=0.0,
-            floor=np.zeros(3),
-            limited=False,
-            met=True,
-            separation={},
-        )
+    (strength,) = tune([rig])
     (run,) = record([rig], [strength], step=step)
     folder = Path(out)
     write_dataset(rig, run, folder, name="two_inertia", description=DESCRIPTION)

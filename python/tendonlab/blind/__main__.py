@@ -1,0 +1,6 @@
+"""python -m tendonlab.blind draw|run|score."""
+
+from .commands import main
+
+if __name__ == "__main__":
+    raise SystemExit(main())

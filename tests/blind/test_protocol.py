@@ -1,0 +1,182 @@
+"""Drawn folders, the runner that keeps the truth away, and the scorer."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tendonlab.blind import draw, run, score
+from tendonlab.blind.commands import add_parser
+from tendonlab.blind.draw import plan
+from tendonlab.blind.rig import EFFECTS
+from tendonlab.blind.run import command
+from tendonlab.blind.twin import make_twin
+
+BUNDLED = Path(__file__).parents[2] / "data" / "two_inertia"
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("blind")
+    return draw(15, 4, folder, jobs=1, num_samples=120, step=2e-4, progress=False)
+
+
+def read(path: Path) -> dict:
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def test_drawn_folders_are_complete(drawn: Path):
+    cases = sorted((drawn / "cases").iterdir())
+    assert [case.name for case in cases] == [f"case-{i:03d}" for i in range(1, 5)]
+    for case in cases:
+        dataset = read(case / "dataset.toml")
+        assert dataset["format"] == "tendonlab-dataset/1"
+        assert dataset["name"] == case.name
+        assert [e["split"] for e in dataset["experiments"]].count("test") == 3
+        assert [e.get("repeat") for e in dataset["experiments"]].count("A") == 3
+        for experiment in dataset["experiments"]:
+            table = pd.read_csv(case / experiment["file"])
+            assert [signal["column"] for signal in dataset["signals"].values()] == list(table.columns[1:])
+            assert np.all(np.diff(table["t"]) > 0)
+            assert np.all(np.isfinite(table.to_numpy()))
+
+
+def test_truth_lies_outside_the_cases(drawn: Path):
+    words = ("truth", "sealed", "verdict", "parameters_only", "stribeck", "gap_noise")
+    for path in (drawn / "cases").rglob("*"):
+        assert "sealed" not in path.name
+        if path.suffix == ".toml":
+            assert not any(word in path.read_text(encoding="utf-8") for word in words)
+    for case in (drawn / "cases").iterdir():
+        sealed = read(drawn / "sealed" / f"{case.name}.toml")
+        assert sealed["format"] == "tendonlab-sealed/1"
+        nominal = read(case / "dataset.toml")["system"]
+        for effect in sealed["effects"]:
+            assert effect not in nominal["nominal_effects"]
+            assert set(sealed["truth"]) > set(nominal["parameters"])
+        assert all(isinstance(value, float) for value in sealed["truth"].values())
+
+
+def test_draw_refuses_to_overwrite(drawn: Path):
+    with pytest.raises(FileExistsError, match="expected a new folder"):
+        draw(11, 1, drawn, progress=False)
+    with pytest.raises(ValueError, match="count = 0"):
+        draw(11, 0, drawn / "new", progress=False)
+
+
+def test_every_effect_has_its_turn():
+    kinds = plan(1, 40)
+    assert {effect for kind, effect in kinds if kind == "effect"} == set(EFFECTS)
+    assert [kind for kind, _ in kinds].count("none") == 6
+    assert [kind for kind, _ in kinds].count("parameters_only") == 6
+    assert kinds == plan(1, 40) != plan(2, 40)
+
+
+def test_twin_without_effect_states_the_truth(tmp_path: Path):
+    folder = make_twin(tmp_path / "none", kind="none", num_samples=100, step=2e-4)
+    sealed = read(folder / "sealed.toml")
+    stated = {name: entry["value"] for name, entry in read(folder / "dataset.toml")["system"]["parameters"].items()}
+    assert sealed["verdict"] == "no_gap"
+    assert stated == sealed["truth"]
+    off = make_twin(tmp_path / "off", kind="parameters_only", num_samples=100, step=2e-4)
+    values = read(off / "dataset.toml")["system"]["parameters"]
+    ratios = {name: values[name]["value"] / true for name, true in sealed["truth"].items()}
+    assert ratios.pop("gear_ratio") == 1.0
+    assert all(0.099 < abs(ratio - 1.0) < 0.201 for ratio in ratios.values())
+    with pytest.raises(ValueError, match="kind = 'noone'"):
+        make_twin(tmp_path / "no", kind="noone")
+
+
+def test_bundled_twin_is_small_and_strong_enough():
+    sealed = read(BUNDLED / "sealed.toml")
+    assert sealed["effects"] == ["joint:stribeck"]
+    assert 3.0 < sealed["draw"]["gap_noise"] < 4.0
+    assert sum(path.stat().st_size for path in BUNDLED.iterdir()) < 3e6
+
+
+def fake_reports(monkeypatch: pytest.MonkeyPatch, sealed: Path, *, right: bool) -> None:
+    """Stand in for the diagnosis: a process that writes a report, right or wrong, knowing the answers."""
+
+    def answer(case: Path, out: Path) -> list[str]:
+        truth = read(sealed / f"{case.name}.toml")
+        effects = truth["effects"] if right else ["cable:backlash"]
+        named = [dict(zip(("element", "effect"), e.split(":"), strict=True), probability=0.9) for e in effects]
+        verdict = truth["verdict"] if right else "effect"
+        shrinkage = {"from_refitted": {"value": 0.95 if named else None}}
+        report = {"verdict": verdict, "effects": named, "selected": effects, "shrinkage": shrinkage, "seconds": 1.0}
+        script = f"import pathlib; pathlib.Path({str(out / 'report.json')!r}).write_text({json.dumps(report)!r})"
+        return [sys.executable, "-c", script]
+
+    monkeypatch.setattr(sys.modules["tendonlab.blind.run"], "command", answer)
+
+
+@pytest.mark.parametrize("right", [True, False])
+def test_run_and_score(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, right: bool):
+    fake_reports(monkeypatch, drawn / "sealed", right=right)
+    verdicts = run(drawn / "cases", tmp_path, jobs=2, progress=False)
+    result = score(drawn / "sealed", tmp_path)
+    assert len(json.loads(verdicts.read_text())["reports"]) == 4
+    assert result.summary["top1"] == result.summary["top3"] == float(right)
+    assert result.summary["verdict right"] == 1.0 if right else result.summary["verdict right"] < 1.0
+    assert result.verdicts.to_numpy().sum() == 4
+    alarms = [result.summary[f"false alarms on {truth}"] for truth in ("no_gap", "parameters_only")]
+    assert {float(not right)} == {alarm for alarm in alarms if alarm == alarm}
+    assert "top1" in str(result)
+
+
+def test_changed_report_is_noticed(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    fake_reports(monkeypatch, drawn / "sealed", right=False)
+    run(drawn / "cases", tmp_path, progress=False)
+    fake_reports(monkeypatch, drawn / "sealed", right=True)
+    before = (tmp_path / "case-001" / "report.json").read_text()
+    run(drawn / "cases", tmp_path, progress=False)
+    assert (tmp_path / "case-001" / "report.json").read_text() == before  # resumed, not run again
+    (tmp_path / "case-001" / "report.json").write_text(before.replace("0.9", "0.8"))
+    with pytest.raises(ValueError, match="is not the report that was hashed"):
+        score(drawn / "sealed", tmp_path)
+
+
+def test_failed_case_is_recorded(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    script = "import sys; sys.exit('out of luck')"
+    module = sys.modules["tendonlab.blind.run"]
+    monkeypatch.setattr(module, "command", lambda case, out: [sys.executable, "-c", script])
+    verdicts = json.loads(run(drawn / "cases", tmp_path, progress=False).read_text())["reports"]
+    assert verdicts["case-001"] == {"verdict": "failed", "message": "exit 1: out of luck"}
+    assert score(drawn / "sealed", tmp_path).summary["top1"] == 0.0
+
+
+def test_run_refuses_a_truth_within_reach(tmp_path: Path):
+    case = tmp_path / "cases" / "case-001"
+    case.mkdir(parents=True)
+    (case / "dataset.toml").write_text("")
+    (tmp_path / "cases" / "sealed").mkdir()
+    with pytest.raises(ValueError, match="out of reach"):
+        run(tmp_path / "cases", tmp_path / "out", progress=False)
+    with pytest.raises(ValueError, match=r"dataset\.toml, found none"):
+        run(tmp_path / "nothing", tmp_path / "out", progress=False)
+
+
+def test_command_is_given_the_case_and_nothing_else():
+    words = command(Path("cases/case-001"), Path("out/case-001"))
+    assert words[1:] == ["-m", "tendonlab", "diagnose", "cases/case-001", "--out", "out/case-001", "--no-figures"]
+
+
+def test_command_line_scores(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
+    fake_reports(monkeypatch, drawn / "sealed", right=True)
+    parser = argparse.ArgumentParser()
+    add_parser(parser.add_subparsers(dest="command", required=True))
+    for words in (
+        ["blind", "run", str(drawn / "cases"), "--out", str(tmp_path)],
+        ["blind", "score", str(drawn / "sealed"), str(tmp_path), "--csv", str(tmp_path / "score.csv")],
+    ):
+        given = parser.parse_args(words)
+        assert given.run(given) == 0
+    assert "top1" in capsys.readouterr().out
+    assert len(pd.read_csv(tmp_path / "score.csv")) == 4
