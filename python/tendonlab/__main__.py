@@ -1,0 +1,7 @@
+"""python -m tendonlab: the same as the command `tendonlab`."""
+
+import sys
+
+from tendonlab.cli import main
+
+sys.exit(main())

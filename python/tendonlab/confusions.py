@@ -1,0 +1,46 @@
+"""What is easily mistaken for what, and the motion or measurement that tells them apart (DIAGNOSIS section 4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tendonlab.catalog import SystemInfo
+
+
+@dataclass(frozen=True)
+class Confusion:
+    """Causes that may explain the same data equally well, and what `separates` them. `effects` holds names such as
+    "joint:stribeck", or words (without a colon) for what is no effect."""
+
+    effects: tuple[str, ...]
+    separates: str
+
+
+_MOTOR_OR_JOINT = "motion that loads the cable differently: an added load, a torque chirp, one side held"
+CONFUSIONS = (
+    Confusion(("motor:stribeck", "joint:stribeck"), _MOTOR_OR_JOINT),
+    Confusion(("motor:presliding", "joint:presliding"), _MOTOR_OR_JOINT),
+    Confusion(("motor:load_dependence", "joint:load_dependence", "contact:load_dependence"), _MOTOR_OR_JOINT),
+    Confusion(
+        ("actuation:offset", "motor:asymmetry", "joint:asymmetry"),
+        "cable stretch under load; slow micro motion and standstill for the asymmetry",
+    ),
+    Confusion(
+        ("actuation:delay", "sensor.joint_angle:delay"),
+        "measuring both motor and joint; the motor's signal alone cannot tell",
+    ),
+    Confusion(
+        ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
+    ),
+)
+
+
+def confusions(info: SystemInfo, effect: str) -> list[Confusion]:
+    """The others of this system that are easily mistaken for `effect`, each with what separates them from it."""
+    known = {e.name for e in info.effects}
+    found = []
+    for confusion in CONFUSIONS:
+        others = tuple(name for name in confusion.effects if (name in known or ":" not in name) and name != effect)
+        if effect in confusion.effects and others:
+            found.append(Confusion(others, confusion.separates))
+    return found
