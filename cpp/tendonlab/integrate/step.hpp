@@ -13,14 +13,14 @@ void add(Y& y, double s, const Y& k) {
   for (std::size_t i = 0; i < y.memory.size(); ++i) y.memory[i] = y.memory[i] + s * k.memory[i];
 }
 
-/// A step and its dense output: (1-s) from + s (to + (1-s)(first + s second)), s from 0 to 1.
+/// A step and its dense output: from + s (to - from + (1-s)(first + s second)), s from 0 to 1: what does not move stays
+/// where it is, to the last bit.
 template <class Y>
 struct Step {
   Y from, to, first, second, error;
   template <class S, class F>
   static F blend(const S& s, const F& a, const F& b, const F& c, const F& d) {
-    const S u = 1.0 - s;
-    return u * a + s * (b + u * (c + s * d));
+    return a + s * ((b - a) + (1.0 - s) * (c + s * d));
   }
   /// The state at the share `s` of the step; its time is left to the caller.
   template <class S>
