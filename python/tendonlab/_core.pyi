@@ -1,0 +1,194 @@
+"""Types of the compiled core. Laws come from the C++ tables, so a new one needs no line here."""
+
+from collections.abc import Mapping, Sequence
+from types import ModuleType
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+class Law:
+    """What the law classes share; each has the methods of its `roles` and a read-only attribute a parameter."""
+
+    name: str
+    equation: str
+    source: str
+    summary: str
+    roles: tuple[str, ...]
+    parameters: tuple[Mapping[str, Any], ...]
+
+    def __init__(self, **parameters: float) -> None: ...
+    def __getattr__(self, name: str) -> Any: ...
+
+class Laws(ModuleType):
+    """A group of laws: `friction.Stribeck` is a class of `Law`."""
+
+    def __getattr__(self, name: str) -> type[Law]: ...
+
+actuation: Laws
+friction: Laws
+sensing: Laws
+transmission: Laws
+
+def laws() -> tuple[tuple[str, str], ...]: ...
+def kinds() -> list[str]: ...
+def system_info(kind: str) -> dict[str, Any]: ...
+def rigid_motion(
+    kind: str, values: Sequence[float], active: Sequence[bool]
+) -> tuple[list[float], float, float]: ...
+
+class Signal:
+    @overload
+    def __init__(self) -> None: ...
+    @overload
+    def __init__(self, knots: ArrayLike, coefficients: ArrayLike, holds: bool) -> None: ...
+
+class Loop:
+    @overload
+    def __init__(self) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        kind: str,
+        axis: int,
+        output: int,
+        proportional: float,
+        derivative: float,
+        reference_weight: float,
+        limit: float,
+        sample_time: float,
+        reference: Signal,
+        disturbance: Signal,
+    ) -> None: ...
+
+class Experiment:
+    def __init__(
+        self,
+        *,
+        kind: str,
+        time: Sequence[float],
+        inputs: Sequence[Signal],
+        loop: Loop,
+        position: Sequence[float],
+        velocity: Sequence[float],
+    ) -> None: ...
+    @property
+    def time(self) -> list[float]: ...
+    @property
+    def position(self) -> list[float]: ...
+    @property
+    def velocity(self) -> list[float]: ...
+    def started(self, position: Sequence[float], velocity: Sequence[float]) -> Experiment: ...
+    def until(self, samples: int) -> Experiment: ...
+
+class Settings:
+    def __init__(
+        self,
+        *,
+        tolerance: float = 1e-6,
+        position_scale: float = 1e-2,
+        velocity_scale: float = 1e-2,
+        max_attempts: int = 20_000_000,
+        ports: bool = False,
+    ) -> None: ...
+
+def simulate(
+    kind: str,
+    values: Sequence[float],
+    active: Sequence[bool],
+    experiment: Experiment,
+    seeds: Sequence[tuple[str, int]],
+    settings: Settings,
+) -> dict[str, Any]: ...
+
+class Whitening:
+    def __init__(
+        self,
+        ar: Sequence[Sequence[float]],
+        sd: Sequence[float],
+        measured: Floats,
+        directions: Floats | None = None,
+        spread: Sequence[float] = ...,
+    ) -> None: ...
+    def rows(self) -> int: ...
+    def apply(self, signals: Floats) -> Floats: ...
+    def apply_many(self, signals: Floats) -> Floats: ...
+    def residual(self, outputs: Floats) -> Floats: ...
+
+class Cancel:
+    def __init__(self) -> None: ...
+    def set(self) -> None: ...
+    def is_set(self) -> bool: ...
+
+class Task:
+    def __init__(
+        self,
+        experiment: Experiment,
+        whitening: Whitening,
+        *,
+        fixed: Mapping[int, float] = ...,
+        added: Mapping[int, float] = ...,
+        initial: Sequence[tuple[str, int]] = ...,
+        initial_sd: Sequence[float] = ...,
+    ) -> None: ...
+    def rows(self) -> int: ...
+
+class Free:
+    def __init__(
+        self,
+        *,
+        index: int,
+        log: bool,
+        scale: float,
+        start: float,
+        mean: float = 0.0,
+        sd: float = ...,
+        lower: float = ...,
+        upper: float = ...,
+    ) -> None: ...
+    @property
+    def index(self) -> int: ...
+    @property
+    def log(self) -> bool: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def start(self) -> float: ...
+    @property
+    def mean(self) -> float: ...
+    @property
+    def sd(self) -> float: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    def value(self, x: float) -> float: ...
+    def coordinate(self, value: float) -> float: ...
+    def slope(self, x: float) -> float: ...
+
+def linearise(
+    kind: str,
+    values: Sequence[float],
+    active: Sequence[bool],
+    tasks: Sequence[Task],
+    free: Sequence[Free],
+    settings: Settings,
+    *,
+    initial: Sequence[Sequence[float]] = ...,
+) -> dict[str, Any]: ...
+def fit(
+    kind: str,
+    values: Sequence[float],
+    active: Sequence[bool],
+    tasks: Sequence[Task],
+    free: Sequence[Free],
+    settings: Settings,
+    *,
+    initial: Sequence[Sequence[float]] = ...,
+    max_iterations: int = 50,
+    tolerance: float = 1e-8,
+    cancel: Cancel | None = None,
+) -> dict[str, Any]: ...
