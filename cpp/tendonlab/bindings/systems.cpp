@@ -132,6 +132,20 @@ void bind_systems(py::module_& module) {
   py::class_<Experiment>(module, "Experiment", "One experiment as the simulator needs it.")
       .def(py::init(&make_experiment), py::kw_only(), py::arg("kind"), py::arg("time"), py::arg("inputs"),
            py::arg("loop"), py::arg("position"), py::arg("velocity"))
+      .def("started", [](const Experiment& of, std::vector<double> position, std::vector<double> velocity) {
+             if (position.size() != of.position.size() || velocity.size() != of.velocity.size())
+               throw ParameterError(sentence("initial state: expected ", of.position.size(), " positions and as many velocities"));
+             Experiment other = of;
+             other.position = std::move(position), other.velocity = std::move(velocity);
+             return other;
+           }, py::arg("position"), py::arg("velocity"), "The same experiment from another initial state.")
+      .def("until", [](const Experiment& of, std::size_t samples) {
+             if (samples < 2 || samples > of.time.size())
+               throw ParameterError(sentence("samples = ", samples, ": expected 2 to ", of.time.size()));
+             Experiment other = of;
+             other.time.resize(samples);
+             return other;
+           }, py::arg("samples"), "The first samples of the experiment.")
       .def_readonly("time", &Experiment::time)
       .def_readonly("position", &Experiment::position)
       .def_readonly("velocity", &Experiment::velocity);

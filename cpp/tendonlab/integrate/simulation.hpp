@@ -30,7 +30,7 @@ class Simulation {
                                       " s: a parameter may be far too stiff, or the tolerance too small"));
       const double reach = std::min(kink, end) - t;
       double length = std::min(h, drive.longest_step());
-      const bool lands = length > 0.95 * reach;
+      const bool lands = length > (retakes ? reach : 0.95 * reach);
       if (lands) length = reach;
       const auto step = advance<Tableau>(system, y, frame, drive, length);
       const double wish = growth(step);
@@ -42,12 +42,14 @@ class Simulation {
       Crossing first = earliest_crossing(step);
       if (first.stale || (first.mode >= 0 && first.share < 0.97)) {  // dense output is less accurate inside a step
         ++trajectory.rejected;
+        retakes = true;
         if (first.stale && length < 1e-9 * (1.0 + std::fabs(t)))
           choose_again(first.mode);
         else
           shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
         continue;
       }
+      retakes = false;
       const double taken = first.mode >= 0 ? first.share * length : length;
       record(step, t, length, taken, frame, drive);
       if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
@@ -234,6 +236,7 @@ class Simulation {
   Frame<System, T> frame;
   Drive<T> drive;
   double t, end, h, kink = 0;
+  bool retakes = false;  ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   double memory_level[slots<System>] = {};
 
   template <class, class>

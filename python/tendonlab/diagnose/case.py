@@ -1,0 +1,128 @@
+"""A case: everything that every model of a diagnosis shares, so that only the effect differs between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.data import Dataset, Experiment
+from tendonlab.priors import Scale, scales
+from tendonlab.replay import Prepared, Replay, choose, prepare
+from tendonlab.signals import white_noise_sd
+from tendonlab.system import System
+
+TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach (DIAGNOSIS section 8)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A dataset made ready. `noise` is the sd of each output's white noise, NaN where it was not measured."""
+
+    dataset: Dataset
+    system: System
+    replay: Replay
+    experiments: tuple[Experiment, ...]
+    prepared: tuple[Prepared, ...]
+    noise: np.ndarray
+    scales: Mapping[str, Scale]
+    settings: _core.Settings
+
+    @property
+    def train(self) -> tuple[int, ...]:
+        """Indices of the experiments to fit."""
+        return tuple(i for i, e in enumerate(self.experiments) if e.split == "train")
+
+    @property
+    def test(self) -> tuple[int, ...]:
+        """Indices of the experiments held out."""
+        return tuple(i for i, e in enumerate(self.experiments) if e.split == "test")
+
+    @property
+    def outputs(self) -> list[str]:
+        """Names of the system's outputs, measured or not."""
+        return [s.name for s in self.system.info.outputs]
+
+    @property
+    def measured(self) -> list[int]:
+        """Indices of the outputs that were measured."""
+        return [c for c in range(len(self.noise)) if np.isfinite(self.noise[c])]
+
+    def at(self, i: int, system: System) -> tuple[list[float], list[bool]]:
+        """Values and flags for the core in experiment i: its conditions hold there, its payload is added."""
+        values = system.values()
+        names = [p.name for p in system.info.parameters]
+        for name, added in self.experiments[i].add.items():
+            values[names.index(name)] += added
+        for name, known in self.experiments[i].conditions.items():
+            if name in system.parameters:
+                values[names.index(name)] = known
+        return values, system.active(keep_zero=False)
+
+    def task(self, i: int, whitening: _core.Whitening) -> _core.Task:
+        """Experiment i for the compiled fit."""
+        names = [p.name for p in self.system.info.parameters]
+        experiment, ready = self.experiments[i], self.prepared[i]
+        return _core.Task(
+            ready.core, whitening,
+            fixed={names.index(n): v for n, v in experiment.conditions.items() if n in self.system.parameters},
+            added={names.index(n): v for n, v in experiment.add.items()},
+            initial=list(ready.initial), initial_sd=list(ready.initial_sd),
+        )  # fmt: skip
+
+
+def make_case(dataset: Dataset, system: System | None = None) -> Case:
+    """Prepare every experiment of `dataset` for the simulator (the dataset's own unless given)."""
+    system = dataset.system() if system is None else system
+    replay = choose(dataset, system)
+    prepared = tuple(prepare(e, system, replay) for e in dataset.experiments)
+    noise = np.array([_noise(dataset, prepared, c) for c in range(len(system.info.outputs))])
+    found = scales(system, prepared)
+    settings = _settings(system, prepared, noise, 1e-4)
+    case = Case(dataset, system, replay, tuple(dataset.experiments), prepared, noise, found, settings)
+    return replace(case, settings=_fine_enough(case))
+
+
+def _noise(dataset: Dataset, prepared: Sequence[Prepared], c: int) -> float:
+    """Sd of the white noise of output c: as stated, else from fourth differences; at least its quantisation's."""
+    records = [e.measured[c] for e in prepared if np.isfinite(e.measured[c]).any()]
+    if not records:
+        return np.nan
+    spec = dataset.signals[dataset.system().info.outputs[c].name]
+    found = spec.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
+    coarse = (spec.resolution or 0.0) / np.sqrt(12)
+    smallest = 1e-9 * max(float(np.nanmax(np.abs(r))) for r in records)
+    return max(float(np.hypot(found, coarse)) if spec.noise_sd is None else found, coarse, smallest, 1e-300)
+
+
+def _settings(system: System, prepared: Sequence[Prepared], noise: np.ndarray, tolerance: float) -> _core.Settings:
+    return _core.Settings(
+        tolerance=tolerance,
+        position_scale=min(e.position_scale for e in prepared),
+        velocity_scale=min(e.velocity_scale for e in prepared),
+    )
+
+
+def _fine_enough(case: Case) -> _core.Settings:
+    """The loosest tolerance at which the simulator's own error stays below a tenth of the sensors' noise."""
+    sample = case.train[: 3]
+    kept = case.measured
+
+    def run(tolerance: float) -> list[np.ndarray]:
+        settings = _settings(case.system, case.prepared, case.noise, tolerance)
+        return [
+            _core.simulate(case.system.kind, *case.at(i, case.system), case.prepared[i].core, [], settings)["outputs"][kept]
+            for i in sample
+        ]
+
+    best = run(TOLERANCES[-1] / 100)
+    for tolerance in TOLERANCES:
+        error = max(
+            float(np.max(np.sqrt(np.mean((a - b) ** 2, axis=1)) / case.noise[kept])) for a, b in zip(run(tolerance), best, strict=True)
+        )
+        if error < NUMERICS_SHARE:
+            break
+    return _settings(case.system, case.prepared, case.noise, tolerance)

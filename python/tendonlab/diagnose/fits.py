@@ -1,0 +1,187 @@
+"""Fits of one model to the training experiments, and what they are worth: evidence and leave-one-experiment-out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.diagnose.case import Case
+from tendonlab.diagnose.floor import kept_samples
+from tendonlab.priors import Free, free_parameters
+from tendonlab.system import System
+
+BLOCK = 2.0  # s, shortest contiguous block that stands for an experiment
+FEW = 4  # with fewer training experiments, blocks stand for them
+
+
+@dataclass(frozen=True)
+class Score:
+    """`residual`, `jacobian`: whitened rows of one block, the initial state and run-to-run friction marginalised."""
+
+    residual: np.ndarray
+    jacobian: np.ndarray
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model fitted to the training experiments. `added`: effects beyond the nominal ones."""
+
+    added: tuple[str, ...]
+    system: System
+    free: tuple[Free, ...]
+    x: np.ndarray
+    initial: tuple[tuple[float, ...], ...]
+    blocks: tuple[Score, ...]
+    states: tuple[tuple[np.ndarray, np.ndarray], ...]  # directions and coordinates of each initial state
+    state_volume: float  # log determinant that marginalising the initial states costs
+    at_bound: tuple[bool, ...]
+    converged: bool
+    message: str
+
+    @cached_property
+    def precision(self) -> np.ndarray:
+        """Of the coordinates, prior included."""
+        return self._information + np.diag(self._prior)
+
+    @cached_property
+    def evidence(self) -> float:
+        """Laplace log evidence, up to what all models share."""
+        away = (self.x - np.array([f.mean for f in self.free])) ** 2 * self._prior
+        fit = sum(float(b.residual @ b.residual) for b in self.blocks)
+        sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
+        _, volume = np.linalg.slogdet(np.eye(len(sd)) + sd[:, None] * self._information * sd)
+        return -0.5 * (fit + float(np.sum(away)) + volume + self.state_volume)
+
+    @cached_property
+    def left_out(self) -> np.ndarray:
+        """Predictive log score of each block when it is left out: one Newton step without it."""
+        scores = []
+        moving = ~np.array(self.at_bound, dtype=bool)
+        for b in self.blocks:
+            j = b.jacobian[:, moving]
+            without = self.precision[np.ix_(moving, moving)] - j.T @ j
+            step = np.linalg.solve(without + 1e-9 * np.diag(np.diag(self.precision)[moving]), j.T @ b.residual)
+            predicted = b.residual + j @ step
+            scores.append(-0.5 * float(predicted @ predicted))
+        return np.array(scores)
+
+    @cached_property
+    def mean_square(self) -> float:
+        """Of the whitened residuals: 1 where the model explains all but the floor."""
+        rows = sum(len(b.residual) for b in self.blocks)
+        return sum(float(b.residual @ b.residual) for b in self.blocks) / rows
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        """Of the coordinates: a sandwich over blocks, never less than the prior and the noise give."""
+        plain = np.linalg.inv(self.precision)
+        pieces = np.array([b.jacobian.T @ b.residual for b in self.blocks])
+        meat = self._information + np.diag(self._prior)
+        if len(pieces) > 1:
+            meat = np.maximum(1.0, self.mean_square) * self._information + np.diag(self._prior)
+            clustered = plain @ (pieces.T @ pieces * len(pieces) / (len(pieces) - 1) + np.diag(self._prior)) @ plain
+            usual = plain @ meat @ plain
+            grow = np.sqrt(np.maximum(1.0, np.diag(clustered) / np.diag(usual)))
+            return grow[:, None] * usual * grow
+        return plain @ meat @ plain
+
+    def value(self, name: str) -> tuple[float, tuple[float, float]]:
+        """Fitted value of a free parameter and its 95 % interval."""
+        k = [f.name for f in self.free].index(name)
+        f, x, sd = self.free[k], float(self.x[k]), float(np.sqrt(self.covariance[k, k]))
+        low, high = sorted((f.value(x - 1.96 * sd), f.value(x + 1.96 * sd)))
+        return f.value(x), (max(low, f.lower), min(high, f.upper))
+
+    @property
+    def _prior(self) -> np.ndarray:
+        return np.array([0.0 if not np.isfinite(f.sd) else f.sd**-2.0 for f in self.free])
+
+    @cached_property
+    def _information(self) -> np.ndarray:
+        width = len(self.free)
+        return sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width)))
+
+
+@dataclass(frozen=True)
+class Fitter:
+    """Fits models of one case under one whitening."""
+
+    case: Case
+    whitening: Sequence[_core.Whitening]
+    ar: Sequence[Sequence[float]]
+    sd: Sequence[float]
+    cancel: _core.Cancel
+
+    def fit(
+        self, system: System, *, added: Sequence[str] = (), initial: Sequence[Sequence[float]] = (), max_iterations: int = 25,
+        solve: bool = True,
+    ) -> Fitted:  # fmt: skip
+        """Fit `system` from its own values, with priors about the nominal ones. `solve` False: only linearise there."""
+        case = self.case
+        rows = free_parameters(system, case.dataset.parameters, case.scales, added=added)
+        free = [f.started(system.parameters[f.name]) for f in rows]
+        tasks = [case.task(i, self.whitening[i]) for i in case.train]
+        arguments = (
+            system.kind, system.values(), system.active(keep_zero=True), tasks, [f.core() for f in free], case.settings,
+        )  # fmt: skip
+        start = [list(s) for s in initial]
+        if solve:
+            found = _core.fit(*arguments, initial=start, max_iterations=max_iterations, tolerance=1e-6, cancel=self.cancel)
+        else:
+            found = _core.linearise(*arguments, initial=start)
+        fitted = system.with_parameters({f.name: found["values"][f.index] for f in free})
+        return self._summarise(fitted, tuple(added), tuple(free), found)
+
+    def _summarise(self, system: System, added: tuple[str, ...], free: tuple[Free, ...], found: dict) -> Fitted:
+        blocks: list[Score] = []
+        states = []
+        volume = 0.0
+        for t, i in enumerate(self.case.train):
+            ready = self.case.prepared[i]
+            k = found["jacobian_initial"][t]
+            mean = [(ready.core.position if of == "position" else ready.core.velocity)[axis] for of, axis in ready.initial]
+            z = (np.array(found["initial"][t]) - np.array(mean)) / np.array(ready.initial_sd) if mean else np.zeros(0)
+            states.append((k, z))
+            volume += float(np.linalg.slogdet(np.eye(k.shape[1]) + k.T @ k)[1])
+            rows = self.rows(states[t], t, found["residuals"][t])
+            slopes = self.rows((k, np.zeros(len(z))), t, found["jacobian"][t])
+            blocks += [Score(r, j) for r, j in zip(rows, slopes, strict=True)]
+        return Fitted(
+            added=added, system=system, free=free, x=np.array(found["x"]), initial=tuple(tuple(s) for s in found["initial"]),
+            blocks=tuple(blocks), states=tuple(states), state_volume=volume, at_bound=tuple(found["at_bound"]), converged=found["converged"],
+            message=found["message"],
+        )  # fmt: skip
+
+    def rows(self, state: tuple[np.ndarray, np.ndarray], t: int, of: np.ndarray) -> list[np.ndarray]:
+        """Whitened rows (residuals or slopes) of training experiment t with its initial state marginalised, in blocks:
+        an experiment is one; where there are few, contiguous parts of it are."""
+        k, z = state
+        offset = k @ z
+        whole = marginalised(k, of - (offset if of.ndim == 1 else offset[:, None]))
+        if len(self.case.train) >= FEW:
+            return [whole]
+        index = block_index(self.case, self.case.train[t], self.ar, self.sd)
+        return [whole[index == b] for b in range(int(index.max()) + 1)]
+
+
+def block_index(case: Case, i: int, ar: Sequence[Sequence[float]], sd: Sequence[float]) -> np.ndarray:
+    """Which contiguous block of at least 2 s each whitened row of experiment i belongs to."""
+    time = np.asarray(case.experiments[i].time)
+    num = max(1, int((time[-1] - time[0]) / BLOCK))
+    of_sample = np.minimum((num * (time - time[0]) / (time[-1] - time[0])).astype(int), num - 1)
+    kept = kept_samples(ar, sd, case.prepared[i].measured)
+    return np.concatenate([of_sample[k] for k in kept])
+
+
+def marginalised(directions: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(I + K K')^(-1/2) rows: K is a random effect of unit covariance."""
+    if directions.shape[1] == 0:
+        return rows
+    u, s, _ = np.linalg.svd(directions, full_matrices=False)
+    gain = 1.0 - 1.0 / np.sqrt(1.0 + s**2)
+    inner = u.T @ rows
+    return np.asarray(rows - u @ (gain * inner if rows.ndim == 1 else gain[:, None] * inner))

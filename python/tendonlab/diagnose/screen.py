@@ -1,0 +1,116 @@
+"""Which effects could explain the gap at all: the secant score of each candidate (DIAGNOSIS section 2, step 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.catalog import Effect, Parameter
+from tendonlab.diagnose.case import Case
+from tendonlab.diagnose.fits import Fitted, Fitter
+from tendonlab.diagnose.floor import started
+from tendonlab.errors import NumericalError
+from tendonlab.priors import AMPLITUDE_SD, start_of
+
+SHAPES = (0.2, 1.0, 5.0)  # of the typical shape
+AMPLITUDES = (0.1, 0.5)  # of the effect's unit
+INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
+
+
+@dataclass(frozen=True)
+class Lead:
+    """A candidate as the screen saw it: expected gain in nats, starting values for its fits, best first, and the gain
+    that an effect of typical size would bring (its visibility)."""
+
+    effect: str
+    gain: float
+    starts: tuple[dict[str, float], ...]
+    visibility: float
+
+
+def candidates(case: Case, best: Fitted) -> list[str]:
+    """Effects of the library that the model lacks and that these data could show."""
+    info = case.system.info
+    measured = {info.outputs[c].name for c in case.measured}
+    found = []
+    for e in info.effects:
+        sensor = e.element.removeprefix("sensor.")
+        unseen = e.element.startswith("sensor.") and sensor not in measured
+        if e.structural or unseen or e.name in best.system.effects or not _has_ground(e, best):
+            continue
+        found.append(e.name)
+    return found
+
+
+def _has_ground(effect: Effect, best: Fitted) -> bool:
+    """A bristle needs dry friction to take over."""
+    if not effect.roles & 16:
+        return True
+    return any(e.name in best.system.effects and e.element == effect.element and e.roles & 2 for e in best.system.info.effects)
+
+
+def screen(fitter: Fitter, best: Fitted, effect: str) -> Lead:
+    """Secant score of one effect, over a grid of its shapes and two amplitudes of each of its amplitude parameters."""
+    case = fitter.case
+    info = case.system.info
+    rows = [info.parameter(name) for name in info.effect(effect).parameters]
+    start = start_of(best.system, effect, case.scales)
+    shapes = [p for p in rows if p.purpose == "shape"]
+    base = _whitened(fitter, best, {}, effect=None)
+    found: list[tuple[float, dict[str, float], float]] = []
+    for factor in SHAPES if shapes else (1.0,):
+        shaped = {**start, **({shapes[0].name: start[shapes[0].name] * factor} if shapes else {})}
+        for p in rows:
+            if not p.amplitude:
+                continue
+            for amplitude in (1.0,) if p.purpose == "share" else AMPLITUDES:
+                try:
+                    found.append(_score(fitter, best, base, effect, p, shaped, amplitude))
+                except NumericalError:
+                    continue
+    if not found:
+        return Lead(effect, 0.0, (start,), 0.0)
+    found.sort(key=lambda f: -f[0])
+    starts = [found[0][1]]
+    for _, values, _ in found[1:]:
+        if shapes and all(values[shapes[0].name] != s[shapes[0].name] for s in starts):
+            starts.append(values)
+    return Lead(effect, found[0][0], tuple(starts[:2]), max(f[2] for f in found))
+
+
+def _score(
+    fitter: Fitter, best: Fitted, base: list[np.ndarray], effect: str, p: Parameter, shaped: dict[str, float], amplitude: float
+) -> tuple[float, dict[str, float], float]:
+    """Expected gain, the values to start a fit from, and the gain of a typical effect."""
+    case = fitter.case
+    scale = (case.scales.get(p.element or "") or next(iter(case.scales.values()))).of(p.dimension) * abs(p.typical)
+    unit = 1.0 if p.purpose == "share" else scale
+    values = {**shaped, p.name: amplitude * unit}
+    moved = _whitened(fitter, best, values, effect=effect)
+    d = np.concatenate([(m - b) / amplitude for m, b in zip(moved, base, strict=True)])
+    r = np.concatenate(base)
+    j = np.concatenate([b.jacobian for b in best.blocks])
+    weight = np.linalg.solve(best.precision, j.T)
+    slope, curvature = float(d @ r - (d @ j) @ (weight @ r)), float(d @ d - (d @ j) @ (weight @ d))
+    curvature = max(curvature, 0.0)
+    if p.purpose == "share":  # all or nothing: the bristle is there or it is not
+        return -slope - 0.5 * curvature, values, 0.5 * curvature
+    at = -slope / (curvature + AMPLITUDE_SD**-2.0)
+    at = min(max(at, p.lower / unit), p.upper / unit)
+    gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
+    return gain, {**values, p.name: at * unit}, 0.5 * curvature
+
+
+def _whitened(fitter: Fitter, best: Fitted, values: dict[str, float], *, effect: str | None) -> list[np.ndarray]:
+    """Whitened residuals of the training experiments at the best model, with `effect` at `values`; in block order."""
+    if effect is None:
+        return [b.residual for b in best.blocks]
+    case, system = fitter.case, best.system.with_effects({effect: values})
+    blocks: list[np.ndarray] = []
+    for t, i in enumerate(case.train):
+        run = _core.simulate(system.kind, *case.at(i, system), started(case, i, best.initial[t]), [], case.settings)
+        blocks += fitter.rows(best.states[t], t, fitter.whitening[i].residual(run["outputs"]))
+    return blocks
