@@ -193,7 +193,9 @@ Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
     const Free& free = problem.free[k];
     const double at = of.x[k];
     of.values[free.index] = free.value(at);
-    const auto touches = [&](double bound) { return std::fabs(at - bound) <= 1e-9 * (1.0 + std::fabs(bound)); };
+    const auto touches = [&](double bound) {
+      return std::isfinite(bound) && std::fabs(at - bound) <= 1e-9 * (1.0 + std::fabs(bound));
+    };
     of.at_bound.push_back(touches(free.coordinate(free.lower)) || touches(free.coordinate(free.upper)));
     if (std::isfinite(free.sd)) of.prior_cost += 0.5 * std::pow((at - free.mean) / free.sd, 2);
   }
