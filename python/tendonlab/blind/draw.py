@@ -15,7 +15,7 @@ from .rig import EFFECTS, NUM_SAMPLES, Rig, draw_rig
 from .strength import Strength, tune
 from .write import FINE_STEP, record, sealed_toml, write_dataset
 
-BATCH = 10  # cases simulated together
+BATCH = 20  # cases simulated together
 MAX_TRIES = 3  # of one effect, before another takes its place
 DESCRIPTION = "Synthetic two-inertia cable rig under a sampled position loop, recorded at 500 Hz; BSD-3-Clause."
 
