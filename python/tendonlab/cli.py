@@ -24,11 +24,13 @@ Arguments = argparse.Namespace
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; 0 whatever it found, 2 for what cannot be done as asked, 130 after Ctrl-C."""
     given = _parser().parse_args(argv)
+    # The blind protocol shares nothing with the library, its errors included: there a ValueError is meant for the user.
+    stated = (ParameterError, DatasetError, NumericalError, *([ValueError] if given.command == "blind" else []))
     try:
         code = int(given.run(given))
         sys.stdout.flush()
         return code
-    except (ParameterError, DatasetError, NumericalError) as error:
+    except stated as error:
         return _complain(f"{type(error).__name__}: {error}")
     except BrokenPipeError:  # the reader of the pipe has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -162,7 +164,7 @@ def _identify(given: Arguments) -> int:
     rig = load(given.dataset)
     names = [name.strip() for name in given.effects.split(",") if name.strip()]
     fit = identify(rig, effects=names, num_starts=given.starts, progress=_progress(given))
-    print(identification_text(fit, rig))
+    print(identification_text(fit))
     if given.out is not None:
         given.out.write_text(json.dumps(fit.to_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         print(f"\nWritten: {given.out}")

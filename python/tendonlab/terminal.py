@@ -16,12 +16,14 @@ if TYPE_CHECKING:
     from tendonlab.catalog import Effect, SystemInfo
     from tendonlab.data import Experiment
     from tendonlab.diagnose.result import Diagnosis, EffectFinding
+    from tendonlab.identification import Identification
     from tendonlab.trajectory import Trajectory
 
 WIDEST = 110  # columns: longer lines are hard to read, however wide the terminal
 _BAR = 20  # columns of a probability of 1
 _LEAST = 0.01  # probability below which a candidate is not worth a line
 _SHOWN = 6
+_CLOSE = 0.95  # correlation of two fitted parameters beyond which the data hardly tell them apart
 
 
 def width() -> int:
@@ -126,6 +128,29 @@ def _items(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
         for mark, item in zip(marks, items, strict=True)
     ]
     return "\n".join([title, *lines])
+
+
+def identification_text(fit: Identification) -> str:
+    """The fitted parameters, a line each, and what deserves a second look."""
+    rows = [["parameter", "nominal", "fitted", "95 %", "unit", ""]]
+    for name, row in fit.parameters.iterrows():
+        shown = [float(row[key]) for key in ("nominal", "value", "ci95_lower", "ci95_upper")]
+        factor, unit = prefixed(shown, str(row["unit"]))
+        nominal, value, lower, upper = (factor * each for each in shown)
+        doubt = "at its bound" if row["at_bound"] else ""
+        rows.append([str(name), number(nominal), number(value), span([lower, upper]), unit, doubt])
+    state = "Converged" if fit.converged else f"NOT converged: {fit.message}"
+    told = f"{state} after {fit.num_iterations} iterations, {len(fit.residuals)} experiments fitted together."
+    parts = [wrapped(told), table(rows, right=(1, 2)), _items("Hard to tell apart", _correlated(fit))]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _correlated(fit: Identification) -> list[str]:
+    names = list(fit.correlations.columns)
+    pairs = [(a, b) for place, a in enumerate(names) for b in names[:place]]
+    found = [(a, b, float(fit.correlations.loc[a, b])) for a, b in pairs]
+    close = sorted((item for item in found if abs(item[2]) > _CLOSE), key=lambda item: -abs(item[2]))
+    return [f"{b} and {a}: correlation {r:.3f}".replace("-", "−") for a, b, r in close]
 
 
 def errors_text(run: Trajectory, experiment: Experiment) -> str:
