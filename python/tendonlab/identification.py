@@ -95,8 +95,9 @@ class Identification:
 
     def ci95(self, name: str) -> tuple[float, float]:
         """Interval that holds the parameter in 95 % of such data. Raises ParameterError for one that was not fitted."""
-        row = self._row(name)
-        return float(row["ci95_lower"]), float(row["ci95_upper"])
+        self._require(name)
+        lower, upper = self.parameters["ci95_lower"], self.parameters["ci95_upper"]
+        return float(lower[name]), float(upper[name])
 
     def profile(self, name: str, *, num_points: int = 9, reach: float = 3.0) -> pd.DataFrame:
         """Profile likelihood of one parameter: columns value, cost (over the optimum's, in nats) and converged, over
@@ -104,9 +105,9 @@ class Identification:
 
         Raises ParameterError for a parameter that was not fitted. The nats count the stated noise as independent;
         `sd` and `ci95` do not."""
-        self._row(name)
+        self._require(name)
         free = next(f for f in self.problem.free if f.name == name)
-        value, sd = self.values[name], float(self.parameters.loc[name, "sd"])
+        value, sd = self.values[name], float(self.parameters["sd"][name])
         centre, width = free.coordinate(value), sd / free.slope(free.coordinate(value))
         inside = [free.value(centre + reach * width * s) for s in np.linspace(-1, 1, num_points)]
         points = sorted({min(max(v, free.lower), free.upper) for v in inside} | {value})
@@ -166,7 +167,6 @@ class Identification:
         state = "converged" if self.converged else f"<b>not converged</b>: {escape(self.message)}"
         return f"<p>{state}</p>{self.parameters.to_html(float_format=lambda v: f'{v:.4g}')}"
 
-    def _row(self, name: str) -> pd.Series[Any]:
+    def _require(self, name: str) -> None:
         if name not in self.parameters.index:
             raise ParameterError(f"{name!r} was not fitted; {nearest(name, [str(n) for n in self.parameters.index])}")
-        return self.parameters.loc[name]

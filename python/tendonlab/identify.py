@@ -34,7 +34,7 @@ def identify(
     num_starts: int = 1,
     seed: int | np.random.Generator = 0,
     progress: bool = True,
-    tolerance: float = 1e-6,
+    tolerance: float = 1e-5,
 ) -> Identification:
     """Fit the free parameters of `system` (the dataset's own unless given) to all training experiments together, after
     adding `effects` ("joint:stribeck"); parameters with sd = 0 stay fixed.
@@ -151,7 +151,8 @@ def _solve(starts: Sequence[Problem], *, progress: bool) -> tuple[dict[str, Any]
 
 
 def _best(jobs: Sequence[Future[dict[str, Any]]], starts: Sequence[Problem]) -> tuple[dict[str, Any], Problem]:
-    found, failure = [], None
+    found: list[tuple[float, int, dict[str, Any], Problem]] = []
+    failure: NumericalError | None = None
     for job, start in zip(jobs, starts, strict=True):
         if job.cancelled():
             continue
@@ -163,7 +164,7 @@ def _best(jobs: Sequence[Future[dict[str, Any]]], starts: Sequence[Problem]) -> 
         found.append((result["cost"], len(found), result, start))
     if not found:
         raise failure or KeyboardInterrupt
-    _, _, result, start = min(found)
+    _, _, result, start = min(found, key=lambda one: one[:2])
     return result, start.at(result["values"], result["initial"])
 
 

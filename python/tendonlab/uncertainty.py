@@ -40,11 +40,11 @@ def uncertainty(
 ) -> Uncertainty:
     """Uncertainty of a fit `found` (see `_core.fit`).
 
-    Covariance H^-1 (B + P) H^-1: H is the curvature with priors and without the nuisances, P the priors' part of it, B
-    the sum of g g' over clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and
-    with four experiments or more also the experiments; the larger sd counts, and none is below that of independent noise
-    of the residuals' size. Intervals use Student's t with the number of clusters. Parameters at a bound count as fixed for
-    the others."""
+    Covariance H^-1 (B + P) H^-1: H is the curvature with priors and without the nuisances, P the priors' part of it,
+    B the sum of g g' over clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and
+    with four experiments or more also the experiments; the larger sd counts, and none is below that of independent
+    noise of the residuals' size. Intervals use Student's t with the number of clusters. Parameters at a bound count as
+    fixed for the others."""
     runs = [_linear(found, e, k, scored) for k, e in enumerate(experiments)]
     precision = np.array([0.0 if np.isinf(f.sd) else f.sd**-2.0 for f in free])
     inside = ~np.asarray(found["at_bound"], dtype=bool)
