@@ -1,0 +1,169 @@
+"""`identify` on datasets that the library simulates itself, so that the truth is known."""
+
+import json
+import os
+import signal
+import threading
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
+from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.identify import identify
+from tendonlab.system import System
+
+TRUE = {"inertia": 0.55, "gravity_torque": 1.1, "coulomb": 0.26, "viscous": 0.48, "torque_constant": 1.0}
+NOMINAL = {"inertia": 0.5, "gravity_torque": 1.0, "coulomb": 0.3, "viscous": 0.4}
+EFFECTS = ("joint:coulomb", "joint:viscous")
+TIME = np.arange(0.0, 3.0, 0.005)
+NOISE = 2e-3
+
+
+def measure(name: str, k: int, *, seed: int, changes: dict[str, float] | None = None, **about: Any) -> Experiment:
+    """One run of the true rig, its angle measured with noise."""
+    system = System(kind="rigid_joint", parameters={**TRUE, **(changes or {})}, effects=EFFECTS)
+    torque = (1.5 + 0.3 * k) * np.sin(2 * np.pi * (0.6 + 0.17 * k) * TIME) * np.sin(0.9 * TIME + 0.3 * k)
+    frame = pd.DataFrame({"motor_torque": torque}, index=pd.Index(TIME, name="t"))
+    angle = system.simulate(frame, tolerance=1e-8)["joint_angle"].to_numpy()
+    frame["joint_angle"] = angle + NOISE * np.random.default_rng([seed, k]).normal(size=len(TIME))
+    return Experiment(name=name, data=frame, initial={"joint_angle": 0.0, "joint_velocity": 0.0}, **about)
+
+
+def rig(*experiments: Experiment, seed: int = 1, **nominal: NominalParameter) -> Dataset:
+    """A dataset of these experiments, or of four plain ones."""
+    runs = experiments or tuple(measure(f"run-{k}", k, seed=seed) for k in range(4))
+    parameters = {name: NominalParameter(value) for name, value in NOMINAL.items()}
+    parameters["torque_constant"] = NominalParameter(1.0, 0.0)
+    signals = {
+        "motor_torque": SignalSpec("motor_torque", "u", "N*m", "input", True),
+        "joint_angle": SignalSpec("joint_angle", "q", "rad", "output", False, noise_sd=NOISE),
+    }
+    return Dataset(
+        name="joint", description="", kind="rigid_joint", axis="rotary", nominal_effects=EFFECTS,
+        parameters={**parameters, **nominal}, controller=None, signals=signals, experiments=runs, path=Path(),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def fit() -> Any:
+    return identify(rig(), progress=False)
+
+
+def test_the_truth_is_within_a_few_standard_deviations(fit: Any) -> None:
+    assert fit.converged, fit.message
+    assert set(fit.values) == set(NOMINAL)
+    for name, value in fit.values.items():
+        assert abs(value - TRUE[name]) < 4 * fit.parameters["sd"][name]
+        low, high = fit.ci95(name)
+        assert low < value < high
+    assert fit.system.parameters["coulomb"] == fit.values["coulomb"]
+    rms = np.sqrt(np.mean(np.concatenate([frame["joint_angle"] for frame in fit.residuals.values()]) ** 2))
+    assert rms == pytest.approx(1.0, abs=0.06)  # four standard errors of 2400 residuals
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
+    """Sixty parameters of fifteen measurements: 95 % intervals with t quantiles miss at most eight (p < 0.01)."""
+    missed = 0
+    for seed in range(15):
+        found = identify(rig(seed=100 + seed), progress=False)
+        missed += sum(not low <= TRUE[n] <= high for n in NOMINAL for low, high in [found.ci95(n)])
+    assert missed <= 8
+
+
+def test_model_error_widens_the_intervals(fit: Any) -> None:
+    """Coulomb friction that differs between runs: the sd sees it, that of independent noise would not."""
+    runs = [measure(f"run-{k}", k, seed=1, changes={"coulomb": 0.26 * s}) for k, s in enumerate((0.7, 0.9, 1.1, 1.3))]
+    found = identify(rig(*runs), progress=False)
+    assert found.parameters["sd"]["coulomb"] > 5 * fit.parameters["sd"]["coulomb"]
+    assert abs(found.values["coulomb"] - 0.26) < 0.05
+
+
+def test_parameters_known_exactly_stay(fit: Any) -> None:
+    found = identify(rig(inertia=NominalParameter(0.55, 0.0)), progress=False)
+    assert "inertia" not in found.values
+    assert found.parameters["sd"]["gravity_torque"] < fit.parameters["sd"]["gravity_torque"]
+
+
+def test_a_stated_prior_holds_against_weak_data() -> None:
+    found = identify(rig(viscous=NominalParameter(0.4, 1e-4)), progress=False)
+    assert found.values["viscous"] == pytest.approx(0.4, rel=0.01)
+
+
+def test_stated_bounds_are_kept_and_told() -> None:
+    found = identify(rig(coulomb=NominalParameter(0.3, None, 0.28, 0.4)), progress=False)
+    assert found.at_bound == ("coulomb",)
+    assert found.values["coulomb"] == pytest.approx(0.28)
+
+
+def test_conditions_and_additions() -> None:
+    runs = (
+        measure("known-friction", 0, seed=2, changes={"coulomb": 0.1}, conditions={"coulomb": 0.1, "room": 21.0}),
+        measure("load", 1, seed=2, changes={"inertia": 0.75}, add={"inertia": 0.2}),
+        measure("plain", 2, seed=2),
+    )
+    found = identify(rig(*runs), progress=False)
+    for name, value in found.values.items():
+        assert abs(value - TRUE[name]) < 4 * found.parameters["sd"][name]
+
+
+def test_an_added_effect_is_fitted_with_the_rest() -> None:
+    found = identify(rig(), effects=["joint:asymmetry"], progress=False)
+    assert "joint:asymmetry" in found.system.effects
+    assert abs(found.values["joint_level_asymmetry"]) < 5 * found.parameters["sd"]["joint_level_asymmetry"]
+
+
+def test_the_profile_is_a_parabola_where_the_model_is_right(fit: Any) -> None:
+    profile = fit.profile("inertia", num_points=5, reach=2.0)
+    information = 1 / np.linalg.inv(_information(fit))[0, 0]
+    free = fit.problem.free[0]
+    x = np.array([free.coordinate(v) for v in profile["value"]]) - free.coordinate(fit.values["inertia"])
+    assert free.name == "inertia"
+    np.testing.assert_allclose(profile["cost"], 0.5 * information * x**2, rtol=0.1, atol=0.02)
+
+
+def _information(fit: Any) -> np.ndarray:
+    found = fit.problem.solve()
+    stacked = np.vstack(found["jacobian"])
+    return np.asarray(stacked.T @ stacked + np.diag([f.sd**-2.0 for f in fit.problem.free]))
+
+
+def test_more_starts_agree_and_repeat(fit: Any) -> None:
+    first, second = (identify(rig(), num_starts=3, seed=7, progress=False) for _ in range(2))
+    assert first.values == second.values
+    assert first.cost == pytest.approx(fit.cost, rel=1e-6)
+
+
+def test_interrupt_keeps_what_is_done() -> None:
+    slow = tuple(measure(f"run-{k}", k % 4, seed=3) for k in range(60))
+    threading.Timer(0.7, os.kill, (os.getpid(), signal.SIGINT)).start()
+    found = identify(rig(*slow), num_starts=30, progress=False, tolerance=1e-9)
+    assert not found.converged
+    assert found.message == "cancelled"
+
+
+def test_results_come_as_plain_types_and_pictures(fit: Any) -> None:
+    plain = json.loads(json.dumps(fit.to_dict(), allow_nan=False))
+    assert plain["parameters"]["coulomb"]["unit"] == "N*m"
+    assert plain["converged"] is True
+    assert repr(fit).startswith("Identification(rigid_joint, converged; inertia = 0.5")
+    assert "<table" in fit._repr_html_()
+    axes = fit.plot(experiment="run-2")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "residual (noise sd)")
+
+
+def test_what_cannot_be_identified_is_told(fit: Any) -> None:
+    with pytest.raises(ParameterError, match="joint:stribek"):
+        identify(rig(), effects=["joint:stribek"], progress=False)
+    with pytest.raises(DatasetError, match="no training experiment"):
+        identify(rig(replace(measure("a", 0, seed=1), split="test")), progress=False)
+    with pytest.raises(DatasetError, match="no experiment 'nine'"):
+        identify(rig(), experiments=["nine"], progress=False)
+    with pytest.raises(ParameterError, match="num_starts = 0: expected at least 1"):
+        identify(rig(), num_starts=0, progress=False)
+    with pytest.raises(ParameterError, match="'torque_constant' was not fitted"):
+        fit.ci95("torque_constant")
