@@ -15,7 +15,7 @@ from tendonlab.diagnose.floor import started
 from tendonlab.errors import NumericalError
 from tendonlab.priors import AMPLITUDE_SD, start_of
 
-SHAPES = (0.2, 1.0, 5.0)  # of the typical shape
+SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
 INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
 
@@ -66,7 +66,7 @@ def screen(fitter: Fitter, best: Fitted, effect: str) -> Lead:
         for p in rows:
             if not p.amplitude:
                 continue
-            for amplitude in (1.0,) if p.purpose == "share" else AMPLITUDES:
+            for amplitude in AMPLITUDES:
                 try:
                     found.append(_score(fitter, best, base, effect, p, shaped, amplitude))
                 except NumericalError:
@@ -96,12 +96,11 @@ def _score(
     weight = np.linalg.solve(best.precision, j.T)
     slope, curvature = float(d @ r - (d @ j) @ (weight @ r)), float(d @ d - (d @ j) @ (weight @ d))
     curvature = max(curvature, 0.0)
-    if p.purpose == "share":  # all or nothing: the bristle is there or it is not
-        return -slope - 0.5 * curvature, values, 0.5 * curvature
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
     at = min(max(at, p.lower / unit), p.upper / unit)
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
-    return gain, {**values, p.name: at * unit}, 0.5 * curvature
+    start = p.typical if p.purpose == "share" else at * unit  # a share is held at its typical value in fits
+    return gain, {**values, p.name: start}, 0.5 * curvature
 
 
 def _whitened(fitter: Fitter, best: Fitted, values: dict[str, float], *, effect: str | None) -> list[np.ndarray]:

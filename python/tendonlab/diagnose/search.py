@@ -1,0 +1,140 @@
+"""Which effects: screen, refit, score, and again from the best model (DIAGNOSIS section 2, steps 5 to 9)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+from tqdm import tqdm
+
+from tendonlab.diagnose.fits import Fitted, Fitter
+from tendonlab.diagnose.screen import Lead, candidates, screen
+from tendonlab.errors import NumericalError, ParameterError
+
+NUM_REFIT, NUM_REFIT_AGAIN = 8, 4
+DETECT_EVIDENCE, DETECT_LEFT_OUT = 10.0, 3.0
+AGAIN_EVIDENCE, AGAIN_LEFT_OUT, AGAIN_SHARE = 30.0, 9.0, 0.01
+STEADY = 2.0  # standard errors over blocks by which a further effect must gain when left out
+MAX_EFFECTS = 3
+TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
+SKETCH = 8  # iterations after which a fit that cannot catch up is abandoned
+CATCH_UP = 0.5
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One refitted candidate against the model it extends: gains in nats."""
+
+    effect: str
+    fitted: Fitted
+    evidence_gain: float
+    left_out_gain: float
+    left_out_se: float
+
+
+@dataclass(frozen=True)
+class Round:
+    """One more effect: all leads, the trials best first, and the probability of each (key None: no further effect)."""
+
+    leads: tuple[Lead, ...]
+    trials: tuple[Trial, ...]
+    probability: dict[str | None, float]
+    accepted: Trial | None
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Search:
+    """The rounds, and the model that came out."""
+
+    null: Fitted
+    best: Fitted
+    rounds: tuple[Round, ...] = field(default=())
+
+    @property
+    def selected(self) -> tuple[str, ...]:
+        """Effects established, in the order in which they were found."""
+        return self.best.added
+
+
+def search(fitter: Fitter, null: Fitted, *, pool: ThreadPoolExecutor, progress: bool, library: Sequence[str] | None) -> Search:
+    """Add effects one at a time, as long as evidence and left-out experiments both ask for it."""
+    best, rounds = null, list[Round]()
+    while len(rounds) < MAX_EFFECTS:
+        one = _round(fitter, best, rounds, pool=pool, progress=progress, library=library)
+        if one is None:
+            break
+        rounds.append(one)
+        if one.accepted is None:
+            break
+        best = one.accepted.fitted
+    return Search(null, best, tuple(rounds))
+
+
+def _round(
+    fitter: Fitter, best: Fitted, before: Sequence[Round], *, pool: ThreadPoolExecutor, progress: bool, library: Sequence[str] | None
+) -> Round | None:
+    names = [c for c in candidates(fitter.case, best) if library is None or c in library]
+    if not names:
+        return None
+    label = "effect" if not before else f"effect {len(before) + 1}"
+    work = pool.map(lambda name: screen(fitter, best, name), names)
+    leads = sorted(tqdm(work, desc=f"screen {label}", total=len(names), disable=not progress, leave=False), key=lambda x: -x.gain)
+    chosen = leads[: NUM_REFIT_AGAIN if before else NUM_REFIT]
+    first = _refit(fitter, best, chosen[0], rival=None)
+    rival = max((t.evidence_gain for t in first), default=0.0)
+    rest = pool.map(lambda lead: _refit(fitter, best, lead, rival=rival), chosen[1:])
+    trials = list(first)
+    for found in tqdm(rest, desc=f"refit {label}", total=len(chosen) - 1, disable=not progress, leave=False):
+        trials += found
+    trials.sort(key=lambda t: -t.evidence_gain)
+    temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
+    accepted = next((t for t in trials[:1] if _accept(t, before)), None)
+    return Round(tuple(leads), tuple(trials), _probabilities(trials, before, temperature), accepted, temperature)
+
+
+def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> list[Trial]:
+    """The best fit over the starts; after a sketch, one that lies far behind `rival` is not finished."""
+    found: Fitted | None = None
+    for start in lead.starts:
+        system = best.system.with_effects({lead.effect: start})
+        added = (*best.added, lead.effect)
+        try:
+            fitted = fitter.fit(system, added=added, initial=best.initial, max_iterations=SKETCH)
+            ahead = rival is None or fitted.evidence - best.evidence > CATCH_UP * rival
+            if not fitted.converged and ahead and (found is None or fitted.evidence > found.evidence - 50):
+                fitted = fitter.fit(fitted.system, added=added, initial=fitted.initial, max_iterations=40)
+        except (NumericalError, ParameterError):
+            continue
+        if found is None or fitted.evidence > found.evidence:
+            found = fitted
+    if found is None:
+        return []
+    gains = found.left_out - best.left_out
+    spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else float("inf")
+    return [Trial(lead.effect, found, found.evidence - best.evidence, float(np.sum(gains)), spread)]
+
+
+def _accept(trial: Trial, before: Sequence[Round]) -> bool:
+    if not before:
+        return trial.evidence_gain > DETECT_EVIDENCE and trial.left_out_gain > DETECT_LEFT_OUT
+    first = before[0].accepted
+    assert first is not None
+    return (
+        trial.evidence_gain > max(AGAIN_EVIDENCE, AGAIN_SHARE * first.evidence_gain)
+        and trial.left_out_gain > max(AGAIN_LEFT_OUT, STEADY * trial.left_out_se)
+    )
+
+
+def _probabilities(trials: Sequence[Trial], before: Sequence[Round], temperature: float) -> dict[str | None, float]:
+    """Tempered evidence: over-confident evidence is divided by a temperature. None stands for no (further) effect."""
+    threshold = AGAIN_EVIDENCE if before else DETECT_EVIDENCE
+    gains: dict[str | None, float] = {None: threshold}
+    for t in trials:  # what left-out experiments do not confirm counts no more than nothing
+        gains[t.effect] = t.evidence_gain if _accept(t, before) else min(t.evidence_gain, threshold)
+    top = max(gains.values())
+    weights = {name: float(np.exp((g - top) / temperature)) for name, g in gains.items()}
+    total = sum(weights.values())
+    return {name: w / total for name, w in weights.items()}

@@ -1,0 +1,88 @@
+"""From the search to a verdict and to probabilities: tempered evidence, not yet calibrated on blind cases."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tendonlab.diagnose.floor import Floor
+from tendonlab.diagnose.search import Round, Search
+
+NO_GAP, NO_EFFECT = 1.15, 1.3  # whitened mean squares below which the nominal, the refitted simulator is at the floor
+EXPLAINED = 0.85  # share of the held-out excess that library effects must remove to be the whole answer
+SOFT, SAME_GROUP = 0.05, 0.2
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict, the probabilities of all four, and those of effects and of sets of effects."""
+
+    verdict: str
+    probability: dict[str, float]
+    effects: dict[str, float]
+    sets: list[dict[str, Any]]
+    indistinguishable: list[list[str]]
+
+
+def decide(found: Search, *, nominal: float, explained: float | None, floor: Floor) -> Verdict:
+    """`nominal`: mean square over the floor at the untouched simulator (whitened, or plain where nothing repeats).
+    `explained`: share of the held-out excess that the selected effects remove, None where there is none."""
+    at_floor = nominal < NO_GAP
+    refitted_at_floor = found.null.mean_square < NO_EFFECT or not floor.repeated
+    none = found.rounds[0].probability[None] if found.rounds else 1.0
+    weight = {
+        "no_gap": _step(NO_GAP - nominal) * (1.0 if not found.selected else none),
+        "parameters_only": _step(nominal - NO_GAP) * none * _step((NO_EFFECT - found.null.mean_square) if floor.repeated else SOFT),
+        "effect": (1.0 - none) * (_step((explained or 0.0) - EXPLAINED) if found.selected else 0.1),
+        "unknown_effect": (1.0 - none) * (_step(EXPLAINED - (explained or 0.0)) if found.selected else 0.5)
+        + (0.0 if refitted_at_floor else none),
+    }
+    if at_floor:
+        verdict = "no_gap"
+    elif not found.selected:
+        verdict = "parameters_only" if refitted_at_floor else "unknown_effect"
+    else:
+        verdict = "effect" if explained is not None and explained >= EXPLAINED else "unknown_effect"
+    weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)
+    total = sum(weight.values())
+    effects, sets = _marginals(found.rounds)
+    groups = [g for r in found.rounds if (g := _group(r))]
+    return Verdict(verdict, {k: v / total for k, v in weight.items()}, effects, sets, groups)
+
+
+def _step(x: float) -> float:
+    return float(1.0 / (1.0 + np.exp(-np.clip(x / SOFT, -50, 50))))
+
+
+def _marginals(rounds: Sequence[Round]) -> tuple[dict[str, float], list[dict[str, Any]]]:
+    """Each round's probabilities, weighted by that of getting there."""
+    effects: dict[str, float] = {}
+    sets: list[dict[str, Any]] = []
+    reach, before = 1.0, list[str]()
+    for k, one in enumerate(rounds):
+        goes_on = k + 1 < len(rounds)
+        for name, p in one.probability.items():
+            if name is not None:
+                effects[name] = max(effects.get(name, 0.0), min(1.0, effects.get(name, 0.0) + reach * p))
+            if name is None and before:
+                sets.append({"effects": list(before), "probability": reach * p})
+            elif name is not None and not (goes_on and one.accepted is not None and name == one.accepted.effect):
+                sets.append({"effects": [*before, name], "probability": reach * p})
+        if one.accepted is None:
+            break
+        reach *= one.probability[one.accepted.effect]
+        before.append(one.accepted.effect)
+    sets.sort(key=lambda s: -float(s["probability"]))
+    return effects, [s for s in sets if s["probability"] > 1e-4][:12]
+
+
+def _group(one: Round) -> list[str]:
+    """Effects that these data cannot tell from the accepted one, most probable first."""
+    if one.accepted is None:
+        return []
+    top = one.probability[one.accepted.effect]
+    members = [(p, n) for n, p in one.probability.items() if n is not None and p >= SAME_GROUP * top]
+    return [n for _, n in sorted(members, reverse=True)] if len(members) > 1 else []
