@@ -65,10 +65,10 @@ class Problem:
 class Identification:
     """What `identify` found.
 
-    `parameters`: indexed by name; value, nominal, sd, lower and upper end of ci95, unit, at_bound. `correlations`: of
-    the free parameters' coordinates. `residuals`: for each experiment a frame by time, s, with a column an output, in
-    noise sd. `initial`: fitted initial states by experiment. `system`: the simulator with the fitted values.
-    `cost`: half the sum of squared residuals, priors included."""
+    `parameters`: indexed by name; value, nominal (0 where the simulator had none), sd, ci95_lower, ci95_upper, unit,
+    at_bound. `correlations`: of the free parameters' coordinates. `residuals`: for each experiment a frame by time, s,
+    with a column an output, in noise sd. `initial`: fitted initial states by experiment. `system`: the simulator with
+    the fitted values. `cost`: half the sum of squared residuals, priors included."""
 
     system: System
     parameters: pd.DataFrame

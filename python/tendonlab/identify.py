@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from tendonlab.data import Dataset, Experiment
     from tendonlab.system import System
 
+__all__ = ["Identification", "Problem", "identify", "noise_sd", "pose"]
+
 START_SHARE = 0.2  # of its typical size: where an added effect starts; at 0 its shape would have no derivative
 
 

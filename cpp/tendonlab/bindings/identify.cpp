@@ -32,8 +32,8 @@ std::shared_ptr<Whitening> make_whitening(std::vector<std::vector<double>> ar, c
 
 Eigen::MatrixXd apply_many(const Whitening& whitening, const Array& many) {
   if (many.ndim() != 3 || many.shape(1) != whitening.channels() || many.shape(2) != whitening.samples())
-    throw ParameterError(sentence("signals with ", many.ndim(), " dimensions: expected shape (m, ", whitening.channels(), ", ",
-                                  whitening.samples(), ")"));
+    throw ParameterError(sentence("signals with ", many.ndim(), " dimensions: expected shape (m, ",
+                                  whitening.channels(), ", ", whitening.samples(), ")"));
   Eigen::MatrixXd all(whitening.rows(), many.shape(0));
   for (py::ssize_t k = 0; k < many.shape(0); ++k)
     whitening.filter(Eigen::Map<const RowMatrix>(many.data(k), whitening.channels(), whitening.samples()), all.col(k));
@@ -45,17 +45,22 @@ Task make_task(const integrate::Experiment& experiment, std::shared_ptr<Whitenin
                const std::map<std::size_t, double>& fixed, const std::map<std::size_t, double>& added,
                const std::vector<std::pair<std::string, int>>& initial, const std::vector<double>& initial_sd) {
   if (initial.size() != initial_sd.size())
-    throw ParameterError(sentence(initial_sd.size(), " initial_sd: expected ", initial.size(), ", one an initial state"));
-  Task task{std::make_shared<integrate::Experiment>(experiment), std::move(whitening),
-            Conditions(fixed.begin(), fixed.end()), Conditions(added.begin(), added.end()), {}};
+    throw ParameterError(
+        sentence(initial_sd.size(), " initial_sd: expected ", initial.size(), ", one an initial state"));
+  Task task{std::make_shared<integrate::Experiment>(experiment),
+            std::move(whitening),
+            Conditions(fixed.begin(), fixed.end()),
+            Conditions(added.begin(), added.end()),
+            {}};
   const auto seeds = make_seeds(initial);
   for (std::size_t k = 0; k < seeds.size(); ++k) task.initial.push_back({seeds[k], initial_sd[k]});
   return task;
 }
 
-identify::Problem make_problem(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
-                               const std::vector<Task>& tasks, const std::vector<Free>& free,
-                               const std::vector<std::vector<double>>& initial, const integrate::Settings& settings) {
+identify::Problem make_problem(const std::string& kind, const std::vector<double>& values,
+                               const std::vector<bool>& active, const std::vector<Task>& tasks,
+                               const std::vector<Free>& free, const std::vector<std::vector<double>>& initial,
+                               const integrate::Settings& settings) {
   const Model& of = model(kind);
   return {of, make_configuration(of, values, active), tasks, free, initial, settings};
 }
@@ -88,8 +93,10 @@ void bind_whitening(py::module_& module) {
   py::class_<Whitening, std::shared_ptr<Whitening>>(
       module, "Whitening",
       "Turns residuals of one experiment into independent ones of unit variance: a filter a channel, innovation\n"
-      "(r_t - sum_k ar[k] r_{t-1-k}) / sd (sd infinite or <= 0: not scored), then (I + V diag(spread^2) V')^(-1/2) with\n"
-      "V = directions, shape (rows, k), already filtered. measured: (channels, samples), NaN where nothing was measured.\n"
+      "(r_t - sum_k ar[k] r_{t-1-k}) / sd (sd infinite or <= 0: not scored), then (I + V diag(spread^2) V')^(-1/2) "
+      "with\n"
+      "V = directions, shape (rows, k), already filtered. measured: (channels, samples), NaN where nothing was "
+      "measured.\n"
       "Rows: channel by channel, time increasing; a sample counts where it and those its filter needs were measured.")
       .def(py::init([](std::vector<std::vector<double>> ar, const std::vector<double>& sd, const Signals& measured,
                        const std::optional<Eigen::MatrixXd>& directions, const std::vector<double>& spread) {
@@ -98,7 +105,8 @@ void bind_whitening(py::module_& module) {
            py::arg("ar"), py::arg("sd"), py::arg("measured"), py::arg("directions") = py::none(),
            py::arg("spread") = std::vector<double>())
       .def("rows", &Whitening::rows, "Number of rows of what it gives.")
-      .def("apply", &Whitening::apply, py::arg("signals"), ReleaseGil(), "Whitened signals, (channels, samples) -> (rows,).")
+      .def("apply", &Whitening::apply, py::arg("signals"), ReleaseGil(),
+           "Whitened signals, (channels, samples) -> (rows,).")
       .def("apply_many", &apply_many, py::arg("signals"), "Whitened signals, (m, channels, samples) -> (rows, m).")
       .def("residual", &Whitening::residual, py::arg("outputs"), ReleaseGil(),
            "Whitened differences of `outputs` from what was measured, (channels, samples) -> (rows,).");
@@ -107,20 +115,24 @@ void bind_whitening(py::module_& module) {
 void bind_problem(py::module_& module) {
   py::class_<Cancel>(module, "Cancel", "Stops the fits that it was given to, from any thread.")
       .def(py::init<>())
-      .def("set", [](Cancel& cancel) { cancel.flag = true; }, "From now on, those fits return at once.")
+      .def(
+          "set", [](Cancel& cancel) { cancel.flag = true; }, "From now on, those fits return at once.")
       .def("is_set", [](const Cancel& cancel) { return cancel.flag.load(); });
-  py::class_<Task>(module, "Task",
-                   "One experiment of a fit: fixed {parameter index: value there}, added {parameter index: by how much it is\n"
-                   "larger there}; initial: free states [(\"position\" | \"velocity\", axis)], initial_sd: their prior standard\n"
-                   "deviations about the experiment's own initial state.")
+  py::class_<Task>(
+      module, "Task",
+      "One experiment of a fit: fixed {parameter index: value there}, added {parameter index: by how much it is\n"
+      "larger there}; initial: free states [(\"position\" | \"velocity\", axis)], initial_sd: their prior standard\n"
+      "deviations about the experiment's own initial state.")
       .def(py::init(&make_task), py::arg("experiment"), py::arg("whitening"), py::kw_only(),
            py::arg("fixed") = std::map<std::size_t, double>(), py::arg("added") = std::map<std::size_t, double>(),
            py::arg("initial") = std::vector<std::pair<std::string, int>>(),
            py::arg("initial_sd") = std::vector<double>())
-      .def("rows", [](const Task& task) { return task.whitening->rows(); }, "Number of its residuals.");
-  py::class_<Free>(module, "Free",
-                   "A fitted parameter: coordinate x = log(value / scale) or value / scale; start, lower, upper are values;\n"
-                   "mean and sd of the normal prior belong to x (sd infinite: no prior).")
+      .def(
+          "rows", [](const Task& task) { return task.whitening->rows(); }, "Number of its residuals.");
+  py::class_<Free>(
+      module, "Free",
+      "A fitted parameter: coordinate x = log(value / scale) or value / scale; start, lower, upper are values;\n"
+      "mean and sd of the normal prior belong to x (sd infinite: no prior).")
       .def(py::init([](std::size_t index, bool log, double scale, double start, double mean, double sd, double lower,
                        double upper) { return Free{index, log, scale, start, mean, sd, lower, upper}; }),
            py::kw_only(), py::arg("index"), py::arg("log"), py::arg("scale"), py::arg("start"), py::arg("mean") = 0.0,
@@ -152,7 +164,8 @@ void bind_identify(py::module_& module) {
       },
       py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("tasks"), py::arg("free"), py::arg("settings"),
       py::kw_only(), py::arg("initial") = std::vector<std::vector<double>>(),
-      "What `fit` returns, at the start and unsolved. `initial`: values of the free states, a list a task (default: the\n"
+      "What `fit` returns, at the start and unsolved. `initial`: values of the free states, a list a task (default: "
+      "the\n"
       "experiments' own).");
   module.def(
       "fit",
@@ -169,7 +182,8 @@ void bind_identify(py::module_& module) {
       py::arg("tolerance") = 1e-8, py::arg("cancel").none(true) = py::none(),
       "Minimises half the sum of squared whitened residuals and priors. Returns a dict: values (all parameters), x\n"
       "(coordinates of the free ones), initial (free states, a list a task), cost, prior_cost, converged, message,\n"
-      "iterations, at_bound; per task: residuals (rows,), jacobian (rows, free) by x, jacobian_initial (rows, states) by\n"
+      "iterations, at_bound; per task: residuals (rows,), jacobian (rows, free) by x, jacobian_initial (rows, states) "
+      "by\n"
       "(state - prior mean) / sd. Raises NumericalError if a simulation fails at the start.");
 }
 }  // namespace tendonlab::bindings

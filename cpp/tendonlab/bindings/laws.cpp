@@ -49,17 +49,23 @@ constexpr bool plays(unsigned wanted) {
 template <class L>
 std::string describe() {
   std::ostringstream text;
-  text << L::summary << "\n\n    " << L::equation << "    (" << L::source << ")\n\nParameters, rotary or linear axis:\n";
+  text << L::summary << "\n\n    " << L::equation << "    (" << L::source
+       << ")\n\nParameters, rotary or linear axis:\n";
   for_each_parameter<L>([&](const auto& p) {
-    text << "  " << p.name << ": " << p.meaning << ", " << both_units(p.dimension) << ", in [" << p.lower << ", " << p.upper << "]";
+    text << "  " << p.name << ": " << p.meaning << ", " << both_units(p.dimension) << ", in [" << p.lower << ", "
+         << p.upper << "]";
     if (p.purpose == Purpose::share) text << ", " << p.typical << " if not given";
     text << "\n";
   });
   return text.str();
 }
 
-double number(double field) { return field; }
-double number(const Divisor<double>& field) { return field.value; }
+double number(double field) {
+  return field;
+}
+double number(const Divisor<double>& field) {
+  return field.value;
+}
 
 template <class L>
 [[noreturn]] void refuse_unknown(const std::string& name) {
@@ -83,8 +89,8 @@ L from_keywords(const py::dict& given) {
       try {
         value = given[key].template cast<double>();
       } catch (const py::cast_error&) {
-        throw ParameterError(sentence(p.name, " = ", py::repr(given[key]).template cast<std::string>(), ": expected a number, ",
-                                      both_units(p.dimension)));
+        throw ParameterError(sentence(p.name, " = ", py::repr(given[key]).template cast<std::string>(),
+                                      ": expected a number, ", both_units(p.dimension)));
       }
     }
     require_within(p.name, value, p.lower, p.upper, both_units(p.dimension));
@@ -113,7 +119,8 @@ template <class L>
 std::string represent(const L& law) {
   std::string inside;
   for_each_parameter<L>([&](const auto& p) {
-    inside += sentence(inside.empty() ? "" : ", ", p.name, "=", py::repr(py::float_(number(law.*p.field))).template cast<std::string>());
+    inside += sentence(inside.empty() ? "" : ", ", p.name, "=",
+                       py::repr(py::float_(number(law.*p.field))).template cast<std::string>());
   });
   return pascal_case(L::name) + "(" + inside + ")";
 }
@@ -160,20 +167,23 @@ void bind_force(Class& law) {
               return sum;
             }),
             TENDONLAB_AT,
-            "Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest. velocity in rad/s\n"
+            "Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest. velocity in "
+            "rad/s\n"
             "or m/s, position in rad or m, load in N*m or N; arrays broadcast.");
 }
 template <class L, class Class>
 void bind_memory(Class& law) {
   if constexpr (plays<L>(role::memory)) {
-    law.def("rate", py::vectorize(+[](const L* of, double velocity, double deflection, double level) {
-              return of->rate(seen(of, velocity, 0.0, 0.0), level, deflection);
-            }),
-            py::kw_only(), arg("velocity") = 0.0, arg("deflection") = 0.0, arg("level"),
-            "Rate of its deflection, rad/s or m/s, where the dry friction level is `level`, N*m or N; arrays broadcast.");
+    law.def(
+        "rate", py::vectorize(+[](const L* of, double velocity, double deflection, double level) {
+          return of->rate(seen(of, velocity, 0.0, 0.0), level, deflection);
+        }),
+        py::kw_only(), arg("velocity") = 0.0, arg("deflection") = 0.0, arg("level"),
+        "Rate of its deflection, rad/s or m/s, where the dry friction level is `level`, N*m or N; arrays broadcast.");
     law.def("force", py::vectorize(+[](const L* of, double velocity, double deflection, double level) {
               const auto at = seen(of, velocity, 0.0, 0.0);
-              return of->bristle_force(at, deflection, of->rate(at, level, deflection)) + of->dry_share() * level * at.direction;
+              return of->bristle_force(at, deflection, of->rate(at, level, deflection)) +
+                     of->dry_share() * level * at.direction;
             }),
             py::kw_only(), arg("velocity") = 0.0, arg("deflection") = 0.0, arg("level"),
             "Force against the motion, N*m or N, at `deflection`, rad or m, where the dry friction level is `level`.");
@@ -182,25 +192,33 @@ void bind_memory(Class& law) {
 template <class L, class Class>
 void bind_motion(Class& law) {
   if constexpr (plays<L>(role::motion)) {
-    law.def("stretch", py::vectorize(+[](const L* of, double position) { return of->motion(seen(of, 0.0, position, 0.0)).position; }),
-            py::kw_only(), arg("position"), "The stretch, rad or m, that is left of `position` for the laws behind it.");
+    law.def(
+        "stretch",
+        py::vectorize(+[](const L* of, double position) { return of->motion(seen(of, 0.0, position, 0.0)).position; }),
+        py::kw_only(), arg("position"), "The stretch, rad or m, that is left of `position` for the laws behind it.");
   }
 }
 /// Signal laws. A delay needs the instants of its signal, and holds the first value before them.
 template <class L, class Class>
 void bind_signal(Class& law) {
   if constexpr (L::roles == 0)
-    law.def("apply", [](const L& of, const Array& signal, const py::object& time) -> py::object {
-              py::object past = signal;
-              if (of.lateness() != 0) {
-                if (time.is_none()) throw ParameterError("time is missing: expected the instants of the signal, s, to delay it");
-                const Array instants = time.cast<Array>();
-                past = py::module_::import("numpy").attr("interp")(instants.attr("__sub__")(of.lateness()), instants, signal);
-              }
-              return py::vectorize(+[](const L* chain, double value) { return chain->apply(value); })(&of, past.cast<Array>());
-            },
-            arg("signal"), py::kw_only(), arg("time") = py::none(),
-            "The signal behind this law, shape of `signal`; a delay needs `time`, s, shape (n,), for signals of shape (n,).");
+    law.def(
+        "apply",
+        [](const L& of, const Array& signal, const py::object& time) -> py::object {
+          py::object past = signal;
+          if (of.lateness() != 0) {
+            if (time.is_none())
+              throw ParameterError("time is missing: expected the instants of the signal, s, to delay it");
+            const Array instants = time.cast<Array>();
+            past =
+                py::module_::import("numpy").attr("interp")(instants.attr("__sub__")(of.lateness()), instants, signal);
+          }
+          return py::vectorize(+[](const L* chain, double value) { return chain->apply(value); })(&of,
+                                                                                                  past.cast<Array>());
+        },
+        arg("signal"), py::kw_only(), arg("time") = py::none(),
+        "The signal behind this law, shape of `signal`; a delay needs `time`, s, shape (n,), for signals of shape "
+        "(n,).");
 }
 
 template <class L>
@@ -208,9 +226,10 @@ py::tuple table() {
   const py::object read_only = py::module_::import("types").attr("MappingProxyType");
   py::list rows;
   for_each_parameter<L>([&](const auto& p) {
-    rows.append(read_only(py::dict(arg("name") = std::string(p.name), arg("dimension") = units[static_cast<int>(p.dimension)].dimension,
-                                   arg("purpose") = purposes[static_cast<int>(p.purpose)], arg("typical") = p.typical,
-                                   arg("lower") = p.lower, arg("upper") = p.upper, arg("meaning") = std::string(p.meaning))));
+    rows.append(read_only(
+        py::dict(arg("name") = std::string(p.name), arg("dimension") = units[static_cast<int>(p.dimension)].dimension,
+                 arg("purpose") = purposes[static_cast<int>(p.purpose)], arg("typical") = p.typical,
+                 arg("lower") = p.lower, arg("upper") = p.upper, arg("meaning") = std::string(p.meaning))));
   });
   return py::tuple(rows);
 }
@@ -233,8 +252,9 @@ struct BindLaw {
     py::class_<L> law(module, pascal_case(L::name).c_str(), describe<L>().c_str());
     law.def(py::init([](const py::kwargs& parameters) { return make<L>(parameters); }));
     for_each_parameter<L>([&](const auto& p) {
-      law.def_property_readonly(std::string(p.name).c_str(), [field = p.field](const L& of) { return number(of.*field); },
-                                sentence(p.meaning, ", ", both_units(p.dimension)).c_str());
+      law.def_property_readonly(
+          std::string(p.name).c_str(), [field = p.field](const L& of) { return number(of.*field); },
+          sentence(p.meaning, ", ", both_units(p.dimension)).c_str());
     });
     law.attr("name") = std::string(L::name);
     law.attr("equation") = std::string(L::equation);
@@ -268,6 +288,7 @@ void bind_laws(py::module_& module) {
   bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
   bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
-  module.def("laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");
+  module.def(
+      "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");
 }
 }  // namespace tendonlab::bindings

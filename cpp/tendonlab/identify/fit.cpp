@@ -88,7 +88,8 @@ void add_priors(const Problem& problem, Vector& x, Coordinates& z, ceres::Proble
   if (!known.empty()) to.AddResidualBlock(new ceres::NormalPrior(weight, mean), nullptr, x.data());
   for (Vector& states : z)
     if (const auto n = states.size(); n > 0)
-      to.AddResidualBlock(new ceres::NormalPrior(ceres::Matrix::Identity(n, n), Vector::Zero(n)), nullptr, states.data());
+      to.AddResidualBlock(new ceres::NormalPrior(ceres::Matrix::Identity(n, n), Vector::Zero(n)), nullptr,
+                          states.data());
 }
 
 void add_bounds(const Problem& problem, Vector& x, ceres::Problem& to) {
@@ -153,19 +154,23 @@ void require_sound(const Problem& problem) {
   const std::size_t count = problem.configuration.values.size();
   if (problem.tasks.empty()) throw ParameterError("tasks: none; expected at least one experiment");
   for (const Free& free : problem.free) {
-    if (free.index >= count) throw ParameterError(sentence("free index = ", free.index, ": expected less than ", count));
+    if (free.index >= count)
+      throw ParameterError(sentence("free index = ", free.index, ": expected less than ", count));
     const std::string& name = problem.model.info().parameters[free.index].name;
     require_within("scale of " + name, free.scale, 1e-300, 1e300, "");
     if (!(free.sd > 0)) throw ParameterError(sentence("prior sd of ", name, " = ", free.sd, ": expected more than 0"));
     if (std::isfinite(free.sd)) require_within("prior mean of " + name, free.mean, -1e300, 1e300, "");
     if (!(free.lower < free.upper))
-      throw ParameterError(sentence("bounds of ", name, " = [", free.lower, ", ", free.upper, "]: expected lower < upper"));
+      throw ParameterError(
+          sentence("bounds of ", name, " = [", free.lower, ", ", free.upper, "]: expected lower < upper"));
     require_within("start of " + name, free.start, free.lower, free.upper, "");
     if (free.log && !(free.start > 0))
-      throw ParameterError(sentence("start of ", name, " = ", free.start, ": expected more than 0 for a log coordinate"));
+      throw ParameterError(
+          sentence("start of ", name, " = ", free.start, ": expected more than 0 for a log coordinate"));
   }
   if (!problem.initial.empty() && problem.initial.size() != problem.tasks.size())
-    throw ParameterError(sentence("initial states of ", problem.initial.size(), " tasks: expected ", problem.tasks.size()));
+    throw ParameterError(
+        sentence("initial states of ", problem.initial.size(), " tasks: expected ", problem.tasks.size()));
 }
 
 Vector start_of_free(const Problem& problem) {
@@ -211,12 +216,16 @@ Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
 }
 }  // namespace
 
-double Free::value(double x) const { return scale * (log ? std::exp(x) : x); }
+double Free::value(double x) const {
+  return scale * (log ? std::exp(x) : x);
+}
 double Free::coordinate(double value) const {
   if (!log) return value / scale;
   return value > 0 ? std::log(value / scale) : -inf;
 }
-double Free::slope(double x) const { return log ? value(x) : scale; }
+double Free::slope(double x) const {
+  return log ? value(x) : scale;
+}
 
 Result linearise(const Problem& problem) {
   require_sound(problem);
@@ -229,14 +238,16 @@ Result fit(const Problem& problem, const Options& options) {
   require_within("tolerance", options.tolerance, 1e-15, 1.0, "");
   Vector x = start_of_free(problem);
   Coordinates z = start_of_states(problem);
-  for (std::size_t e = 0; e < problem.tasks.size(); ++e) Prediction(problem, e).at(x, z[e], false);  // throws at the start
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e)
+    Prediction(problem, e).at(x, z[e], false);  // throws at the start
   std::exception_ptr thrown;
   ceres::Problem solved;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
     std::vector<double*> blocks;
     if (x.size() > 0) blocks.push_back(x.data());
     if (z[e].size() > 0) blocks.push_back(z[e].data());
-    if (blocks.empty()) throw ParameterError("free: none; expected at least one free parameter or initial state a task");
+    if (blocks.empty())
+      throw ParameterError("free: none; expected at least one free parameter or initial state a task");
     solved.AddResidualBlock(new TaskCost(problem, e, options.cancel, thrown), nullptr, blocks);
   }
   add_priors(problem, x, z, solved);

@@ -19,7 +19,8 @@ void require_sound(const Problem& problem, const Task& task) {
   for (const auto* conditions : {&task.fixed, &task.added})
     for (const auto& [index, value] : *conditions) {
       if (index >= info.parameters.size())
-        throw ParameterError(sentence("condition on parameter ", index, ": expected less than ", info.parameters.size()));
+        throw ParameterError(
+            sentence("condition on parameter ", index, ": expected less than ", info.parameters.size()));
       require_within("condition on " + info.parameters[index].name, value, -1e300, 1e300, "");
     }
   for (const FreeState& state : task.initial) {
@@ -61,7 +62,8 @@ std::vector<double> Prediction::states(const Eigen::VectorXd& z) const {
 }
 Eigen::VectorXd Prediction::coordinates(const std::vector<double>& states) const {
   if (states.size() != task.initial.size())
-    throw ParameterError(sentence(states.size(), " initial states: expected ", task.initial.size(), ", as the task frees"));
+    throw ParameterError(
+        sentence(states.size(), " initial states: expected ", task.initial.size(), ", as the task frees"));
   Eigen::VectorXd z(num_initial());
   for (std::size_t k = 0; k < states.size(); ++k) {
     require_within("initial state", states[k], -1e300, 1e300, "");
@@ -95,7 +97,8 @@ Eigen::MatrixXd Prediction::whitened_gradient(const integrate::Trajectory& run) 
   Eigen::MatrixXd all(whitening.rows(), run.width);
   const Eigen::Index cells = static_cast<Eigen::Index>(run.channels) * run.samples;
   for (Eigen::Index k = 0; k < run.width; ++k)
-    whitening.filter(Eigen::Map<const RowMatrix>(run.gradient.data() + k * cells, run.channels, run.samples), all.col(k));
+    whitening.filter(Eigen::Map<const RowMatrix>(run.gradient.data() + k * cells, run.channels, run.samples),
+                     all.col(k));
   whitening.shrink(all);
   return all;
 }
@@ -118,7 +121,8 @@ Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bo
       out.by_initial.col(k) = task.initial[static_cast<std::size_t>(k)].sd * gradient.col(column++);
   }
   if (!out.residual.allFinite() || !out.by_free.allFinite() || !out.by_initial.allFinite())
-    throw NumericalError(sentence(problem.model.info().kind, ": outputs or their derivatives are not finite; a parameter ",
+    throw NumericalError(sentence(problem.model.info().kind,
+                                  ": outputs or their derivatives are not finite; a parameter ",
                                   "may be far from its data, or the tolerance too large"));
   return out;
 }

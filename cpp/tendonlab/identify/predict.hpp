@@ -1,5 +1,6 @@
 #pragma once
-// What one experiment of a fit predicts: simulation and whitening, with derivatives by the coordinates. Knows no solver.
+// What one experiment of a fit predicts: simulation and whitening, with derivatives by the coordinates. Knows no
+// solver.
 #include "tendonlab/identify/fit.hpp"
 
 namespace tendonlab::identify {

@@ -18,7 +18,9 @@ Whitening::Whitening(std::vector<ChannelNoise> channel_noise, RowMatrix measurem
   find_basis(directions, spread);
 }
 
-bool Whitening::scores(std::size_t channel) const { return noise[channel].sd > 0 && std::isfinite(noise[channel].sd); }
+bool Whitening::scores(std::size_t channel) const {
+  return noise[channel].sd > 0 && std::isfinite(noise[channel].sd);
+}
 
 void Whitening::find_runs() {
   for (std::size_t c = 0; c < noise.size(); ++c) {
@@ -35,8 +37,9 @@ void Whitening::find_runs() {
       ++num_rows;
     }
     if (runs.size() == runs_before)
-      throw ParameterError(sentence("channel ", c, ": no ", order + 1, " samples in a row were measured; expected some, or sd[",
-                                    c, "] = inf to leave it out"));
+      throw ParameterError(sentence("channel ", c, ": no ", order + 1,
+                                    " samples in a row were measured; expected some, or sd[", c,
+                                    "] = inf to leave it out"));
   }
   if (num_rows == 0) throw ParameterError("sd: no channel has a finite positive one; expected something to score");
 }
@@ -77,8 +80,8 @@ void Whitening::shrink(Eigen::Ref<Eigen::MatrixXd> columns) const {
 
 Eigen::VectorXd Whitening::apply(const Eigen::Ref<const RowMatrix>& signals) const {
   if (signals.rows() != channels() || signals.cols() != samples())
-    throw ParameterError(sentence("signals of shape (", signals.rows(), ", ", signals.cols(), "): expected (", channels(),
-                                  ", ", samples(), ")"));
+    throw ParameterError(sentence("signals of shape (", signals.rows(), ", ", signals.cols(), "): expected (",
+                                  channels(), ", ", samples(), ")"));
   Eigen::VectorXd out(num_rows);
   filter(signals, out);
   shrink(out);

@@ -1,5 +1,6 @@
 #pragma once
-// From residuals in units of their signals to independent ones of unit variance: one matrix per experiment, never formed.
+// From residuals in units of their signals to independent ones of unit variance: one matrix per experiment, never
+// formed.
 #include <Eigen/Core>
 #include <limits>
 #include <vector>
@@ -10,7 +11,8 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// Noise of one output: e_t = (r_t - sum_k ar[k] r_{t-1-k}) / sd is white with unit variance.
 struct ChannelNoise {
   std::vector<double> ar;
-  double sd = std::numeric_limits<double>::infinity();  ///< of the innovation, in the signal's unit; infinite: not scored
+  double sd =
+      std::numeric_limits<double>::infinity();  ///< of the innovation, in the signal's unit; infinite: not scored
 };
 
 /// W = (I + V diag(tau^2) V')^(-1/2) A: A filters each channel by its noise; V are directions, already filtered, along
