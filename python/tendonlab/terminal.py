@@ -146,11 +146,10 @@ def identification_text(fit: Identification) -> str:
 
 
 def _correlated(fit: Identification) -> list[str]:
-    names = list(fit.correlations.columns)
-    pairs = [(a, b) for place, a in enumerate(names) for b in names[:place]]
-    found = [(a, b, float(fit.correlations.loc[a, b])) for a, b in pairs]
-    close = sorted((item for item in found if abs(item[2]) > _CLOSE), key=lambda item: -abs(item[2]))
-    return [f"{b} and {a}: correlation {r:.3f}".replace("-", "−") for a, b, r in close]
+    names, r = list(fit.correlations.columns), fit.correlations.to_numpy(dtype=float)
+    pairs = [(i, j) for i in range(len(names)) for j in range(i + 1, len(names)) if abs(r[i, j]) > _CLOSE]
+    close = sorted(pairs, key=lambda pair: -abs(float(r[pair])))
+    return [f"{names[i]} and {names[j]}: correlation {r[i, j]:.3f}".replace("-", "−") for i, j in close]
 
 
 def errors_text(run: Trajectory, experiment: Experiment) -> str:

@@ -1,0 +1,186 @@
+"""Each command of the command line: what it prints, what it writes, and its exit code."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import tendonlab as tl
+from tendonlab import demo
+from tendonlab.cli import main
+
+Printed = pytest.CaptureFixture[str]
+
+
+def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own, as a user runs it."""
+    command = [sys.executable, "-m", "tendonlab", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, encoding="utf-8", timeout=300, check=False)
+
+
+def complaint(capsys: Printed) -> str:
+    """The one line on stderr; nothing else may have been printed."""
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    return printed.err
+
+
+def test_version(capsys: Printed) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"tendonlab {tl.__version__}\n"
+
+
+def test_systems_lists_every_kind_with_its_signals(capsys: Printed) -> None:
+    assert main(["systems"]) == 0
+    out = capsys.readouterr().out
+    for kind in tl.kinds():
+        info = tl.system_info(kind)
+        assert kind in out.splitlines()
+        assert all(signal.name in out for signal in (*info.inputs, *info.outputs))
+
+
+@pytest.mark.parametrize(("axis", "unit"), [("rotary", "N·m"), ("linear", "N")])
+def test_effects_lists_each_with_equation_source_and_units(capsys: Printed, axis: str, unit: str) -> None:
+    assert main(["effects", "--system", "two_inertia", "--axis", axis]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    for effect in tl.system_info("two_inertia").effects:
+        assert (effect.name in text) != effect.structural
+        assert effect.structural or f"{effect.equation} [{effect.source}]" in text
+    assert f"joint_static_excess ({unit}): static minus kinetic friction" in text
+    assert "easily mistaken for motor:stribeck; what separates them: motion that loads the cable" in text
+
+
+def test_effects_without_a_system_lists_all(capsys: Printed) -> None:
+    assert main(["effects"]) == 0
+    out = capsys.readouterr().out
+    assert all(f"{kind}: effects" in out for kind in tl.kinds())
+
+
+def test_datasets_list_names_licence_and_citation(capsys: Printed) -> None:
+    assert main(["datasets", "list"]) == 0
+    out = capsys.readouterr().out
+    assert "emps" in out
+    assert "Licence:" in out
+    assert "Cite:" in out
+
+
+def test_simulate_compares_with_what_was_measured(capsys: Printed, tiny: Path, tmp_path: Path) -> None:
+    file = tmp_path / "out.csv"
+    assert main(["simulate", str(tiny), "--out", str(file)]) == 0
+    out = capsys.readouterr().out
+    assert "run-5 (test): 600 samples" in out
+    assert "joint_angle" in out
+    written = pd.read_csv(file, index_col="t")
+    expected = tl.load(tiny).system().simulate(tl.load(tiny)["run-5"]).outputs
+    pd.testing.assert_frame_equal(written, expected, rtol=1e-8)  # nine digits are written
+
+
+def test_simulate_takes_values_and_effects(tiny: Path, tmp_path: Path) -> None:
+    arguments = ["--experiment", "run-1", "--effects", "joint:stribeck", "--out", str(tmp_path / "out.csv")]
+    values = ["coulomb=0.04", "joint_static_excess=0.02", "joint_stribeck_velocity=0.1"]
+    assert main(["simulate", str(tiny), *arguments, "--set", *values]) == 0
+    rig = tl.load(tiny)
+    sim = rig.system().with_parameters({"coulomb": 0.04})
+    sim = sim.with_effects({"joint:stribeck": {"static_excess": 0.02, "stribeck_velocity": 0.1}})
+    written = pd.read_csv(tmp_path / "out.csv", index_col="t")
+    pd.testing.assert_frame_equal(written, sim.simulate(rig["run-1"]).outputs, rtol=1e-8)
+
+
+def test_identify_finds_the_parameters_and_prints_nothing_else(tiny: Path, tmp_path: Path) -> None:
+    """The solver and its logging are guests: stderr stays empty."""
+    done = run("identify", tiny, "--out", tmp_path / "fit.json", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "viscous" in done.stdout
+    json.loads((tmp_path / "fit.json").read_text(encoding="utf-8"))
+
+
+def test_identify_adds_effects(capsys: Printed, tiny: Path) -> None:
+    assert main(["identify", str(tiny), "--effects", "joint:stribeck,actuation:offset"]) == 0
+    out = capsys.readouterr().out
+    assert "joint_static_excess" in out
+    assert "actuation_offset" in out
+
+
+def test_diagnose_says_the_verdict_and_writes_the_report(tiny: Path, tmp_path: Path) -> None:
+    """The tiny rig lacks nothing but good parameter values."""
+    done = run("diagnose", tiny, "--out", "report", "--no-figures", "--seed", "3", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "noise floor" in done.stdout
+    assert "report.html" in done.stdout
+    assert {path.name for path in (tmp_path / "report").iterdir()} == {"report.html", "report.json"}
+    report = json.loads((tmp_path / "report" / "report.json").read_text(encoding="utf-8"))
+    assert (report["verdict"], report["seed"]) == ("parameters_only", 3)
+
+
+def test_demo_names_the_missing_effect(tmp_path: Path) -> None:
+    done = run("demo", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    report = json.loads((tmp_path / "tendonlab-demo" / "report.json").read_text(encoding="utf-8"))
+    assert report["verdict"] == "effect"
+    assert "tendonlab-demo/report.html" in done.stdout
+    assert (tmp_path / "tendonlab-demo" / "report.html").is_file()
+
+
+def test_the_bundled_rig_comes_without_its_truth() -> None:
+    folder = demo.bundled()
+    assert tl.load(folder).name == "two_inertia"
+    assert not (folder / "sealed.toml").exists()
+    with pytest.raises(tl.DatasetError, match="'two-inertia': expected one of two_inertia"):
+        demo.bundled("two-inertia")
+
+
+def test_blind_is_among_the_commands(capsys: Printed, tmp_path: Path) -> None:
+    assert main(["blind", "run", str(tmp_path / "nowhere"), "--out", str(tmp_path / "reports")]) == 2
+    assert "nowhere" in complaint(capsys)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["diagnose", "nowhere"], "DatasetError: nowhere/dataset.toml: no such file"),
+        (["identify", "{tiny}", "--effects", "joint:stribek"], "'joint:stribek' is no effect of rigid_joint; did"),
+        (["simulate", "{tiny}", "--experiment", "run-9"], "no experiment 'run-9'"),
+        (["simulate", "{tiny}", "--set", "coulomb=-1"], "coulomb = -1.0: expected a value in [0.0, inf] N*m"),
+        (["simulate", "{tiny}", "--set", "coulomb"], "--set coulomb: expected NAME=VALUE with a number"),
+        (["simulate", "{tiny}", "--effects", "joint:stribeck"], "joint_static_excess: missing"),
+        (["simulate", "{tiny}", "--out", "{tiny}/absent/out.csv"], "absent"),
+        (["effects", "--system", "two_inertial"], "did you mean 'two_inertia'?"),
+        (["datasets", "prepare", "empd"], "'empd' is no public dataset"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_done_is_one_line_and_exit_code_2(
+    capsys: Printed, tiny: Path, arguments: list[str], told: str
+) -> None:
+    assert main([argument.format(tiny=tiny) for argument in arguments]) == 2
+    printed = capsys.readouterr()
+    assert printed.err.startswith("tendonlab: ")
+    assert printed.err.count("\n") == 1
+    assert told in printed.err
+
+
+def test_a_wrong_command_line_is_exit_code_2(capsys: Printed) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["diagnoze", "here"])
+    assert ended.value.code == 2
+    assert "diagnoze" in capsys.readouterr().err
+
+
+def test_ctrl_c_is_one_line_and_exit_code_130(capsys: Printed, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(path: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tendonlab.data.load", interrupted)
+    assert main(["simulate", "anything"]) == 130
+    assert complaint(capsys) == "tendonlab: interrupted\n"
+
+
+def test_a_reader_that_leaves_is_no_error(tmp_path: Path) -> None:
+    command = f"{sys.executable} -m tendonlab effects | head -n 1"
+    done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, encoding="utf-8", check=False)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -1,0 +1,70 @@
+"""The README does what it says: its Python runs, its dataset loads, its commands exist, the CI runs its test line."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tendonlab as tl
+from tendonlab import cli
+
+ROOT = Path(__file__).resolve().parents[1]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.S)
+
+
+def test_the_tour_runs_as_written(tmp_path: Path) -> None:
+    """In a process of its own, beside a `data` folder as in a clone."""
+    (tmp_path / "data").symlink_to(ROOT / "data")
+    (code,) = blocks("python")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        cwd=tmp_path,
+        env={**os.environ, "MPLBACKEND": "Agg"},
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Stribeck friction at the joint" in done.stdout
+    assert (tmp_path / "out" / "report.html").is_file()
+
+
+def test_the_dataset_of_the_reader_loads(tmp_path: Path) -> None:
+    (text,) = blocks("toml")
+    (tmp_path / "dataset.toml").write_text(text, encoding="utf-8")
+    time = np.arange(0.0, 4.0, 0.01)
+    for name in re.findall(r'"(\w+\.csv)"', text):
+        table = pd.DataFrame({"t": time, "current": np.sin(3 * time), "angle": 40 * np.sin(2 * time)})
+        table.to_csv(tmp_path / name, index=False)
+    rig = tl.load(tmp_path)
+    assert [e.split for e in rig] == ["train", "test"]
+    assert rig["chirp"].data["joint_angle"].max() == pytest.approx(np.deg2rad(40), rel=1e-3)
+    assert np.isfinite(rig.system().simulate(rig["chirp"])["joint_angle"]).all()
+
+
+@pytest.mark.parametrize(
+    "line", [line for block in blocks("sh") for line in block.splitlines() if line.startswith("tendonlab ")]
+)
+def test_commands_exist(line: str) -> None:
+    assert callable(cli._parser().parse_args(shlex.split(line)[1:]).run)
+
+
+def test_the_ci_runs_the_line_of_the_readme() -> None:
+    (line,) = [line.strip() for line in TEXT.splitlines() if line.endswith("pytest") and "apt-get install" in line]
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert line.replace("sudo ", "$sudo ") in script
+
+
+def test_links_and_figures_are_there() -> None:
+    targets = re.findall(r"\]\(([^)#]+)\)", TEXT)
+    assert [target for target in targets if "://" not in target and not (ROOT / target).exists()] == []
