@@ -82,5 +82,11 @@ template <int words>
 double plain(const Gradient<words>& a) {
   return a.value[0];
 }
+template <int words>
+bool varies(const Gradient<words>& a) {
+  for (int k = 0; k < Gradient<words>::width; ++k)
+    if (a.derivative(k) != 0.0) return true;
+  return false;
+}
 #undef TENDONLAB_G
 }  // namespace tendonlab

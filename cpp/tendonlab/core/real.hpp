@@ -25,6 +25,8 @@ S square(const S& a) {
 }
 
 inline double plain(double a) { return a; }
+/// Does anything that is differentiated move this?
+inline bool varies(double) { return false; }
 inline double select(bool condition, double a, double b) { return condition ? a : b; }
 inline double abs(double a) { return std::fabs(a); }
 

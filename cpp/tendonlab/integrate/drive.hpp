@@ -18,7 +18,8 @@ class Drive {
   Drive(const Experiment& experiment, const T& command_delay, const T& sensor_delay, const T& sensor_bias)
       : from(experiment), late(command_delay), sensor_late(sensor_delay), bias(sensor_bias),
         shift(plain(command_delay)), remembers(needs_past()) {
-    pass(experiment.time.front());
+    pass_known(experiment.time.front());
+    pass_command(experiment.time.front());
   }
 
   /// The command that reaches the actuator, as a function of the motion.
@@ -78,21 +79,23 @@ class Drive {
     look(from.loop.reference, reference_piece, shift);
     if (samples()) next = std::min(next, tick_time(tick));
     for (const auto& c : pending) next = std::min(next, c.due);
+    if (!echoes.empty()) next = std::min(next, echoes.front());
     return next > now ? next : std::nextafter(now, Signal::inf_time);
   }
-  /// Moves every held signal to the piece that begins at `now`, which the stepper has landed on.
-  void pass(double now) {
-    const auto move = [&](const Signal& s, int& i, double by) {
-      while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
-    };
-    move(from.inputs[0], piece[0], shift);
-    for (std::size_t k = 1; k < from.inputs.size(); ++k) move(from.inputs[k], piece[k], 0.0);
-    move(from.loop.disturbance, disturbance_piece, shift);
-    move(from.loop.reference, reference_piece, shift);
+  /// Moves the held inputs that no delay touches to the piece that begins at `now`, which the stepper has landed on.
+  void pass_known(double now) {
+    for (std::size_t k = 1; k < from.inputs.size(); ++k) move(from.inputs[k], piece[k], 0.0, now);
+  }
+  /// The same for whatever makes the command: its jumps move with its delay.
+  void pass_command(double now) {
+    move(from.inputs[0], piece[0], shift, now);
+    move(from.loop.disturbance, disturbance_piece, shift, now);
+    move(from.loop.reference, reference_piece, shift, now);
     while (!pending.empty() && pending.front().due <= now) {
       held = pending.front().value;
       pending.pop_front();
     }
+    for (; !echoes.empty() && echoes.front() <= now; echoes.pop_front()) past.advance();
   }
   /// The sampled controller reads its sensor when its clock ticks; the command takes effect after the delay.
   template <int n>
@@ -101,7 +104,7 @@ class Drive {
     const Loop& loop = from.loop;
     const auto axis = static_cast<std::size_t>(loop.axis);
     T y = at.position[axis], rate = at.velocity[axis];
-    if (plain(sensor_late) > 0) std::tie(y, rate) = past.reading(T(now - sensor_late), y, rate, T(now));
+    if (is_late(sensor_late)) std::tie(y, rate) = past.reading(T(now - sensor_late), y, rate, T(now));
     y = y + bias;
     int unshifted = loop.reference.holds ? loop.reference.locate(now, reference_piece) : reference_piece;
     const T r = loop.reference.value(T(now), unshifted);
@@ -114,9 +117,25 @@ class Drive {
     int at_tick = loop.disturbance.holds ? loop.disturbance.locate(now, disturbance_piece) : disturbance_piece;
     pending.push_back({tick_time(tick) + shift, u + loop.disturbance.value(T(now), at_tick)});
     ++tick;
-    pass(now);
+    pass_command(now);
   }
   bool samples() const { return from.loop.kind == Loop::Kind::controller && from.loop.sample_time > 0; }
+
+  /// What the loop reads before the start: the initial state.
+  template <int n>
+  void begin(const Motion<T, n>& at, double now) {
+    if (!remembers) return;
+    const auto axis = static_cast<std::size_t>(from.loop.axis);
+    past.begin(at.position[axis], at.velocity[axis], now, samples());
+    echo(now);
+  }
+  /// The motion has a kink at `now`: a loop in continuous time sees it again later, and the stepper lands on that.
+  void echo(double now) {
+    if (!remembers || samples() || lateness() <= Past<T>::shortest) return;
+    past.split();
+    echoes.push_back(now + lateness());
+  }
+  bool hears_echo(double now) const { return !echoes.empty() && echoes.front() <= now; }
 
   /// How far back the loop reads, s.
   double lateness() const { return shift + plain(sensor_late); }
@@ -137,15 +156,21 @@ class Drive {
     double due;
     T value;
   };
+  /// A delay that is still 0 but differentiated needs the past too: its derivative is the slope of what it delays.
+  static bool is_late(const T& delay) { return plain(delay) > 0 || varies(delay); }
   bool needs_past() const {
-    return from.loop.kind == Loop::Kind::controller && (plain(sensor_late) > 0 || (plain(late) > 0 && !samples()));
+    return from.loop.kind == Loop::Kind::controller && (is_late(sensor_late) || (is_late(late) && !samples()));
   }
   double clipped(double u) const { return u > from.loop.limit ? 1.0 : u < -from.loop.limit ? -1.0 : 0.0; }
+  static void move(const Signal& s, int& i, double by, double now) {
+    while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
+  }
   double tick_time(long k) const { return from.time.front() + static_cast<double>(k) * from.loop.sample_time; }
 
   mutable std::array<int, max_inputs> piece{};
   mutable int reference_piece = 0, disturbance_piece = 0;
   std::deque<Command> pending;
+  std::deque<double> echoes;  ///< when kinks of the past motion reach the loop
   long tick = 0;
   T held{}, last_reading{}, last_reference{};
 };

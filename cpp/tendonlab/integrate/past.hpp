@@ -1,6 +1,7 @@
 #pragma once
 // The past of the looped axis, for loops with a delay: the dense output of the steps taken, as far back as needed.
 #include <deque>
+#include <limits>
 #include <tuple>
 
 #include "tendonlab/integrate/step.hpp"
@@ -9,26 +10,45 @@ namespace tendonlab::integrate {
 template <class T>
 class Past {
  public:
-  /// Delays below this, in s, are expanded to first order about the present instead of bounding every step.
+  /// Delays below this, in s, are expanded about the present instead of bounding every step.
   static constexpr double shortest = 1e-4;
 
+  /// Before `now` everything was as it is now. `sampled`: whoever reads does so at instants that no step straddles.
+  void begin(const T& position, const T& velocity, double now, bool sampled) {
+    first_position = position, first_velocity = velocity, beginning = now;
+    segment_read = sampled ? std::numeric_limits<int>::max() : -1;
+  }
   template <class Y>
   void add(const Step<Y>& s, double start, double h, double taken, int axis, double keep) {
     const auto j = static_cast<std::size_t>(axis);
     const auto part = [&](const auto& of) { return Curve{of(s.from.at), of(s.to.at), of(s.first.at), of(s.second.at)}; };
-    pieces.push_back({start, start + taken, h, part([&](const auto& at) { return at.position[j]; }),
+    pieces.push_back({start, start + taken, h, segment_written, part([&](const auto& at) { return at.position[j]; }),
                       part([&](const auto& at) { return at.velocity[j]; })});
-    acceleration = (s.to.at.velocity[j] - s.from.at.velocity[j]) * (1.0 / h);
     while (pieces.size() > 1 && pieces.front().end < start - 2 * keep) pieces.pop_front();
   }
+  /// What follows lies beyond a kink of the motion.
+  void split() { ++segment_written; }
+  /// Readings have reached the next kink.
+  void advance() { ++segment_read; }
+  /// The acceleration at `now`; `continues`: no kink since the last one.
+  void arrive(const T& at_present, double now, bool continues) {
+    jerk = continues && now > present ? (at_present - acceleration) / (now - present) : T(0.0);
+    acceleration = at_present, present = now;
+  }
+
   /// Position and velocity at time `then`; `y`, `rate` are those at `now`.
   template <class S>
   std::tuple<S, S> reading(const S& then, const S& y, const S& rate, const S& now) const {
-    if (plain(now) - plain(then) <= shortest)
-      return {y - (now - then) * rate, rate - (now - then) * lift<S>(acceleration)};
-    if (pieces.empty() || plain(then) <= pieces.front().start) return first(y, rate);
-    auto p = pieces.rbegin();
-    while (p + 1 != pieces.rend() && p->start > plain(then)) ++p;
+    const S late = now - then;
+    if (plain(late) <= shortest) {
+      const S change = lift<S>(acceleration) + lift<S>(jerk) * (now - present);
+      return {y - late * (rate - 0.5 * late * change), rate - late * change};
+    }
+    if (segment_read < 0 || plain(then) <= beginning || pieces.empty())
+      return {lift<S>(first_position), lift<S>(first_velocity)};
+    auto p = pieces.rbegin();  // never a piece beyond the kink that the stepper landed on
+    while (p + 1 != pieces.rend() && (p->segment > segment_read || (p->start > plain(then) && (p + 1)->segment == p->segment)))
+      ++p;
     const S s = (then - p->start) * (1.0 / p->h);
     return {p->position.template at<S>(s), p->velocity.template at<S>(s)};
   }
@@ -38,21 +58,17 @@ class Past {
     T from, to, first, second;
     template <class S>
     S at(const S& s) const {
-      const S u = 1.0 - s;
-      return u * lift<S>(from) + s * (lift<S>(to) + u * (lift<S>(first) + s * lift<S>(second)));
+      return lift<S>(from) + s * (lift<S>(T(to - from)) + (1.0 - s) * (lift<S>(first) + s * lift<S>(second)));
     }
   };
   struct Piece {
     double start, end, h;
+    int segment;  ///< how many kinks lie before it
     Curve position, velocity;
   };
-  /// Before the start everything was as it was at the start.
-  template <class S>
-  std::tuple<S, S> first(const S& y, const S& rate) const {
-    if (pieces.empty()) return {y, rate};
-    return {lift<S>(pieces.front().position.from), lift<S>(pieces.front().velocity.from)};
-  }
   std::deque<Piece> pieces;
-  T acceleration{};
+  T first_position{}, first_velocity{}, acceleration{}, jerk{};
+  double beginning = 0, present = 0;
+  int segment_written = -1, segment_read = -1;
 };
 }  // namespace tendonlab::integrate

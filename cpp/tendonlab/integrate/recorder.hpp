@@ -1,5 +1,7 @@
 #pragma once
 // Writes outputs at the instants of the samples, through the sensors: bias by their chain, delay by an earlier instant.
+#include <optional>
+
 #include "tendonlab/integrate/simulation.hpp"
 
 namespace tendonlab::integrate {
@@ -12,7 +14,7 @@ class Recorder {
   /// `column`: the first column of the trajectory's gradient that this run fills, `width` of them.
   Recorder(const System& of, const Experiment& with, Trajectory& into, int first_column, int columns, bool with_ports)
       : system(of), contact(of), time(with.time), out(into), column(first_column), width(columns), records_ports(with_ports) {
-    for (std::size_t c = 0; c < channels; ++c) delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0;
+    for (std::size_t c = 0; c < channels; ++c) delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
   template <class Inputs>
   void operator()(const Step<Y>& s, double start, double length, double taken, const Frame<System, T>& frame,
@@ -21,20 +23,25 @@ class Recorder {
     if (!late) {
       for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
         const Y y = state(s, T((time[next[0]] - start) * per_length), time[next[0]]);
-        const auto seen = observe(y, frame, in);
+        auto coupling = couple(y, frame, in);
+        const auto seen = observe(y, coupling);
         for (std::size_t c = 0; c < channels; ++c) write(c, next[0], system.sensor[c].apply(seen[c]));
+        if (records_ports) write_ports(next[0], y, coupling(), frame, in);
       }
     } else {
       for (std::size_t c = 0; c < channels; ++c)
         for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
           const T share = (time[next[c]] - start - delay[c]) * per_length;
           const Y y = state(s, plain(share) > 0 ? share : T(0.0), time[next[c]] - plain(delay[c]));
-          write(c, next[c], system.sensor[c].apply(observe(y, frame, in)[c]));
+          auto coupling = couple(y, frame, in);
+          write(c, next[c], system.sensor[c].apply(observe(y, coupling)[c]));
         }
     }
-    if (!records_ports) return;
-    for (; next_port < time.size() && time[next_port] <= reached; ++next_port)
-      write_ports(state(s, T((time[next_port] - start) * per_length), time[next_port]), frame, in);
+    if (!records_ports || !late) return;  // ports have no sensors
+    for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {
+      const Y y = state(s, T((time[next_port] - start) * per_length), time[next_port]);
+      write_ports(next_port, y, couple(y, frame, in)(), frame, in);
+    }
   }
 
  private:
@@ -43,14 +50,24 @@ class Recorder {
     y.at.time = T(now);
     return y;
   }
+  /// What the ports see at `y`, worked out when it is first asked for: most outputs do without.
   template <class Inputs>
-  auto observe(const Y& y, const Frame<System, T>& frame, const Inputs& in) const {
-    return system.observe(y.at, [&](auto i) {
-      const auto c = system.couple(y.at, frame.mode, in);
-      T z(0.0);
-      if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
-      return std::get<static_cast<std::size_t>(i)>(system.slot).respond(c.port[i], z).force;
-    });
+  auto couple(const Y& y, const Frame<System, T>& frame, const Inputs& in) const {
+    using Coupled = decltype(system.couple(y.at, frame.mode, in));
+    return [&, known = std::optional<Coupled>()]() mutable -> const Coupled& {
+      if (!known) known = system.couple(y.at, frame.mode, in);
+      return *known;
+    };
+  }
+  template <int i, class Coupled>
+  T force(const Y& y, const Coupled& c) const {
+    T z(0.0);
+    if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
+    return std::get<static_cast<std::size_t>(i)>(system.slot).respond(c.port[i], z).force;
+  }
+  template <class Coupling>
+  auto observe(const Y& y, Coupling& coupling) const {
+    return system.observe(y.at, [&](auto i) { return force<i>(y, coupling()); });
   }
   void write(std::size_t channel, std::size_t sample, const T& value) {
     out.value[channel * time.size() + sample] = plain(value);
@@ -60,20 +77,18 @@ class Recorder {
   }
   /// Velocity, position, load and force of each port; a sticking port's friction is what holds it, borne by the first
   /// slot of its mode.
-  template <class Inputs>
-  void write_ports(const Y& y, const Frame<System, T>& frame, const Inputs& in) {
-    const auto c = system.couple(y.at, frame.mode, in);
-    const auto push = contact.holding(y, frame, in);
+  template <class Coupled, class Inputs>
+  void write_ports(std::size_t sample, const Y& y, const Coupled& c, const Frame<System, T>& frame, const Inputs& in) {
+    std::array<double, System::directions> push{};
+    if (frame.holds) push = contact.holding(y, frame, in);
     unroll<ports>([&](auto i) {
-      T z(0.0);
-      if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
       const auto& port = c.port[i];
-      double force = plain(std::get<static_cast<std::size_t>(i)>(system.slot).respond(port, z).force);
+      double effort = plain(force<i>(y, c));
       constexpr int m = System::ports[i].direction;
       if constexpr (m >= 0)
-        if (contact.bearer(m) == i) force += push[m];
-      const double row[4] = {plain(port.velocity), plain(port.position), plain(port.load), force};
-      for (std::size_t k = 0; k < 4; ++k) out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + next_port] = row[k];
+        if (contact.bearer(m) == i) effort += push[m];
+      const double row[4] = {plain(port.velocity), plain(port.position), plain(port.load), effort};
+      for (std::size_t k = 0; k < 4; ++k) out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + sample] = row[k];
     });
   }
 

@@ -61,9 +61,10 @@ class Simulation {
         ++trajectory.events;
         pass_event(first.mode);
         h = 0.25 * length;
-      } else if (t >= kink) {
-        pass_kink();
       }
+      const bool continues = first.mode < 0 && t < kink;
+      if (first.mode < 0 && t >= kink) pass_kink();
+      arrive(continues);
     }
   }
 
@@ -91,11 +92,13 @@ class Simulation {
         frame.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
       }
     }
+    drive.begin(y.at, t);
     drive.sample(y.at, t);
     if (drive.saturates()) drive.side = limit_side();
     kink = drive.next_kink(t);
     contact.settle(y, frame, resting, drive);
     refresh();
+    arrive(false);
   }
 
   /// By how much the next step may grow (> 0), or minus the factor by which this one must shrink.
@@ -171,6 +174,8 @@ class Simulation {
     const Jump<System, T> jump(*this, m);
     turn(m);
     jump.apply(*this);
+    drive.echo(t);
+    kink = drive.next_kink(t);
     refresh();
   }
   void turn(int m) {
@@ -204,14 +209,24 @@ class Simulation {
     refresh();
   }
   void pass_kink() {
+    drive.pass_known(t);  // at an instant that no parameter moves
+    contact.settle(y, frame, {}, drive);
     const Jump<System, T> jump(*this, -1);
-    drive.pass(t);
+    const bool echoed = drive.hears_echo(t);  // an echo is smoother than what it echoes: it is not followed further
+    drive.pass_command(t);
+    if (!echoed) drive.echo(t);
     drive.sample(y.at, t);
     if (drive.saturates()) drive.side = limit_side();
     kink = drive.next_kink(t);
     contact.settle(y, frame, {}, drive);
     jump.apply(*this);
     refresh();
+  }
+  /// Where the loop is late by less than the stepper resolves, it needs the acceleration instead.
+  void arrive(bool continues) {
+    if (!drive.remembers || drive.lateness() > Past<T>::shortest) return;
+    const auto axis = static_cast<std::size_t>(drive.from.loop.axis);
+    drive.past.arrive(rate(system, y, frame, drive).acceleration[axis], t, continues);
   }
   /// The scale of each memory follows the friction level it stands for.
   void refresh() {

@@ -73,6 +73,7 @@ class ModelOf final : public Model {
   }
   integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
                                  const integrate::Settings& settings) const override {
+    require_matching(experiment, seeds);
     integrate::Trajectory out;
     out.channels = static_cast<int>(Of<double>::outputs.size());
     out.samples = static_cast<int>(experiment.time.size());
@@ -93,6 +94,23 @@ class ModelOf final : public Model {
   }
 
  private:
+  /// What was made for another system, or asks for what this one has not, must not reach the stepper.
+  void require_matching(const integrate::Experiment& experiment, const Seeds& seeds) const {
+    using System = Of<double>;
+    const auto index = [](std::string_view of, std::size_t value, std::size_t count) {
+      if (value >= count)
+        throw ParameterError(sentence(of, " ", static_cast<long>(value), ": ", System::name, " has ", count));
+    };
+    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != System::dof)
+      throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ", experiment.position.size(),
+                                    " positions: ", System::name, " expects ", System::inputs.size(), " and ", System::dof));
+    index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
+    index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
+    for (const auto& seed : seeds)
+      index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
+            static_cast<std::size_t>(seed.index),
+            seed.of == integrate::Seed::Of::parameter ? description.parameters.size() : static_cast<std::size_t>(System::dof));
+  }
   template <class T>
   static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
                   std::size_t first, std::size_t count, const integrate::Settings& settings, integrate::Trajectory& out) {
