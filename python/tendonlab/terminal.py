@@ -34,7 +34,14 @@ def width() -> int:
 def wrapped(text: str, *, indent: str = "", hanging: str | None = None) -> str:
     """`text` filled to the width; `indent` before the first line, `hanging` (or `indent`) before the others."""
     after = indent if hanging is None else hanging
-    return textwrap.fill(text, width(), initial_indent=indent, subsequent_indent=after, break_long_words=False)
+    return textwrap.fill(
+        text,
+        width(),
+        initial_indent=indent,
+        subsequent_indent=after,
+        break_long_words=False,
+        break_on_hyphens=False,  # names such as run-01 stay whole
+    )
 
 
 def table(rows: Sequence[Sequence[str]], *, right: Iterable[int] = (), indent: str = "  ") -> str:
@@ -62,13 +69,14 @@ def diagnosis_text(diagnosis: Diagnosis) -> str:
 
 
 def _gap(diagnosis: Diagnosis) -> str:
-    rows = [["signal", "unit", "noise floor", "nominal", "refitted", "with effect"]]
+    stages = ["noise_floor", "nominal", "refitted", *(["with_effect"] if diagnosis.selected else [])]
+    rows = [["signal", "unit", *(stage.replace("_", " ") for stage in stages)]]
     for signal, values in diagnosis.gap.items():
-        shown = [values[stage] for stage in ("noise_floor", "nominal", "refitted", "with_effect")]
+        shown = [values[stage] for stage in stages]
         factor, unit = prefixed(shown, diagnosis.units.get(signal, ""))
         rows.append([signal, unit, *(number(None if v is None else factor * v) for v in shown)])
     how = REPLAYS.get(str(diagnosis.replay["kind"]), str(diagnosis.replay["kind"]))
-    return f"{wrapped(f'Error on held-out experiments, RMS ({how})')}\n{table(rows, right=range(2, 6))}"
+    return f"{wrapped(f'Error on held-out experiments, RMS ({how})')}\n{table(rows, right=range(2, len(rows[0])))}"
 
 
 def _effects(diagnosis: Diagnosis) -> str:
