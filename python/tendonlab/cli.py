@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import os
 import sys
@@ -23,6 +24,9 @@ Arguments = argparse.Namespace
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; 0 whatever it found, 2 for what cannot be done as asked, 130 after Ctrl-C."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without "·" shows "?", and the answer stays
     given = _parser().parse_args(argv)
     # The blind protocol shares nothing with the library, its errors included: there a ValueError is meant for the user.
     stated = (ParameterError, DatasetError, NumericalError, *([ValueError] if given.command == "blind" else []))

@@ -1,6 +1,7 @@
 """Each command of the command line: what it prints, what it writes, and its exit code."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -184,3 +185,11 @@ def test_a_reader_that_leaves_is_no_error(tmp_path: Path) -> None:
     command = f"{sys.executable} -m tendonlab effects | head -n 1"
     done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, encoding="utf-8", check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_terminal_without_the_letters_still_gets_the_answer(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tendonlab", "effects", "--system", "rigid_joint"]
+    plain = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, cwd=tmp_path, env=plain, capture_output=True, encoding="ascii", check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "coulomb (N?m): kinetic friction" in done.stdout
