@@ -108,14 +108,17 @@ class Drive {
     y = y + bias;
     int unshifted = loop.reference.holds ? loop.reference.locate(now, reference_piece) : reference_piece;
     const T r = loop.reference.value(T(now), unshifted);
-    if (tick == 0) last_reading = y, last_reference = r;
+    const bool first = tick == 0;
+    if (first) last_reading = y, last_reference = r;
     T u = loop.proportional * (r - y) + (loop.derivative / loop.sample_time) *
                                             (loop.reference_weight * (r - last_reference) - (y - last_reading));
     if (plain(u) > loop.limit) u = T(loop.limit);
     if (plain(u) < -loop.limit) u = T(-loop.limit);
     last_reading = y, last_reference = r;
     int at_tick = loop.disturbance.holds ? loop.disturbance.locate(now, disturbance_piece) : disturbance_piece;
-    pending.push_back({tick_time(tick) + shift, u + loop.disturbance.value(T(now), at_tick)});
+    u = u + loop.disturbance.value(T(now), at_tick);
+    if (first) held = u;  // before the record began the command was what it is at its first sample
+    pending.push_back({tick_time(tick) + shift, u});
     ++tick;
     pass_command(now);
   }

@@ -45,6 +45,8 @@ class Simulation {
         retakes = true;
         if (first.stale && length < 1e-9 * (1.0 + std::fabs(t)))
           choose_again(first.mode);
+        else if (!first.stale && first.share * length < 1e-13 * (1.0 + std::fabs(t)))
+          ++trajectory.events, pass_event(first.mode);  // nearer than time resolves: it is now
         else
           shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
         continue;

@@ -15,6 +15,7 @@ from tendonlab.signals import white_noise_sd
 from tendonlab.system import System
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach (DIAGNOSIS section 8)
 
 
@@ -99,7 +100,9 @@ def _noise(dataset: Dataset, prepared: Sequence[Prepared], c: int) -> float:
 
 
 def _settings(system: System, prepared: Sequence[Prepared], noise: np.ndarray, tolerance: float) -> _core.Settings:
+    longest = max(e.measured.shape[1] for e in prepared)
     return _core.Settings(
+        max_attempts=ATTEMPTS * longest + 10_000,
         tolerance=tolerance,
         position_scale=min(e.position_scale for e in prepared),
         velocity_scale=min(e.velocity_scale for e in prepared),

@@ -19,6 +19,7 @@ AGAIN_EVIDENCE, AGAIN_LEFT_OUT, AGAIN_SHARE = 30.0, 9.0, 0.01
 STEADY = 2.0  # standard errors over blocks by which a further effect must gain when left out
 MAX_EFFECTS = 3
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
+UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 SKETCH = 8  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5
 
@@ -133,7 +134,8 @@ def _probabilities(trials: Sequence[Trial], before: Sequence[Round], temperature
     threshold = AGAIN_EVIDENCE if before else DETECT_EVIDENCE
     gains: dict[str | None, float] = {None: threshold}
     for t in trials:  # what left-out experiments do not confirm counts no more than nothing
-        gains[t.effect] = t.evidence_gain if _accept(t, before) else min(t.evidence_gain, threshold)
+        unconfirmed = min(t.evidence_gain, threshold - UNCONFIRMED * temperature)
+        gains[t.effect] = t.evidence_gain if _accept(t, before) else unconfirmed
     top = max(gains.values())
     weights = {name: float(np.exp((g - top) / temperature)) for name, g in gains.items()}
     total = sum(weights.values())

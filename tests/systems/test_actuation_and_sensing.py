@@ -1,0 +1,57 @@
+"""Errors of actuator and sensors: what they do to the command and to what is read, exactly."""
+
+import numpy as np
+import pytest
+from integrate.rig import FRICTION, NOMINAL, joint, pair, run
+
+T = np.linspace(0.0, 1.0, 501)
+
+
+def pulses(t):
+    return np.where((t > 0.0995) & (t < 0.2995), 0.04, 0.0) - np.where((t > 0.4995) & (t < 0.5995), 0.06, 0.0)
+
+
+@pytest.mark.parametrize("kind", ["hold", "linear", "smooth"])
+def test_delay_of_the_command_shifts_the_response(kind):
+    """A rig at rest that is late by ten samples does the same ten samples later."""
+    on_time = run(pair(NOMINAL, **FRICTION), T, pulses(T), kind=kind, tolerance=1e-11)
+    late = run(pair((*NOMINAL, "actuation:delay"), **FRICTION, actuation_delay=0.02), T, pulses(T), kind=kind, tolerance=1e-11)
+    assert np.ptp(on_time["joint_angle"]) > 0.05
+    for name in ("motor_angle", "joint_angle", "cable_torque"):
+        assert np.all(late[name][:55] == 0.0)
+        assert late[name][10:] == pytest.approx(on_time[name][:-10], abs=1e-8)
+
+
+def test_gain_error_and_offset_of_the_actuator():
+    """u (1 + e) + o: a free mass tells."""
+    system = joint(("actuation:gain_error", "actuation:offset"), actuation_gain_error=0.25, actuation_offset=-0.3)
+    done = run(system, T, 2.0)
+    assert done["joint_velocity"] == pytest.approx(2.2 * T, rel=1e-12, abs=1e-14)
+
+
+def test_gain_error_comes_before_the_offset():
+    system = joint(("actuation:gain_error", "actuation:offset"), actuation_gain_error=-0.5, actuation_offset=3.5)
+    assert run(system, T, 7.0)["joint_velocity"] == pytest.approx(7.0 * T, rel=1e-12, abs=1e-14)
+
+
+def test_bias_adds_to_its_sensor_alone():
+    plain = run(pair(NOMINAL, **FRICTION), T, pulses(T), kind="hold")
+    biased = run(pair((*NOMINAL, "sensor.joint_angle:bias"), **FRICTION, sensor__joint_angle_bias=0.25), T, pulses(T), kind="hold")
+    assert np.array_equal(biased["joint_angle"], plain["joint_angle"] + 0.25)
+    assert np.array_equal(biased["motor_angle"], plain["motor_angle"])
+
+
+def test_delay_of_a_sensor_shifts_its_reading_alone():
+    effects = (*NOMINAL, "sensor.motor_angle:delay")
+    plain = run(pair(NOMINAL, **FRICTION), T, pulses(T), kind="hold")
+    late = run(pair(effects, **FRICTION, sensor__motor_angle_delay=0.03), T, pulses(T), kind="hold")
+    assert late["motor_angle"][15:] == pytest.approx(plain["motor_angle"][:-15], abs=1e-12)
+    assert np.all(late["motor_angle"][:15] == 0.0)  # before the start it read what it reads at the start
+    assert np.array_equal(late["joint_angle"], plain["joint_angle"])
+
+
+def test_delay_of_a_sensor_between_samples():
+    """Constant speed: the reading lags by speed times delay."""
+    system = joint(("sensor.joint_angle:delay",), sensor__joint_angle_delay=0.0137)
+    done = run(system, T, 0.0, velocity=[2.0])
+    assert done["joint_angle"] == pytest.approx(2.0 * np.maximum(T - 0.0137, 0.0), abs=1e-12)
