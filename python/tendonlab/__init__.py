@@ -1,4 +1,4 @@
-"""tendonlab: friction and transmission models of cable- and tendon-driven mechanisms, and why simulators miss reality."""
+"""Friction and transmission models of cable- and tendon-driven mechanisms, and why simulators miss reality."""
 
 from importlib.metadata import version as _version
 

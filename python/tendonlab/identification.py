@@ -148,15 +148,19 @@ class Identification:
             "prior_cost": self.prior_cost,
             "parameters": {
                 name: {
-                    "value": row["value"], "nominal": row["nominal"], "sd": row["sd"], "unit": row["unit"],
-                    "ci95": [row["ci95_lower"], row["ci95_upper"]], "at_bound": bool(row["at_bound"]),
+                    "value": row["value"],
+                    "nominal": row["nominal"],
+                    "sd": row["sd"],
+                    "unit": row["unit"],
+                    "ci95": [row["ci95_lower"], row["ci95_upper"]],
+                    "at_bound": bool(row["at_bound"]),
                 }
                 for name, row in rows.items()
             },
             "correlations": self.correlations.to_dict(),
             "initial": self.initial,
             "noise_sd": self.noise_sd,
-        }  # fmt: skip
+        }
 
     def __repr__(self) -> str:
         state = "converged" if self.converged else f"not converged: {self.message}"

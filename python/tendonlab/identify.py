@@ -73,8 +73,8 @@ def noise_sd(dataset: Dataset, system: System, experiments: Sequence[Prepared]) 
         seen = spec.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
         found[output.name] = max(seen, least) or 1.0
     if not found:
-        raise DatasetError(f"{dataset.name}: no output of {system.kind} was measured; expected one of "
-                           f"{', '.join(o.name for o in system.info.outputs)}")  # fmt: skip
+        outputs = ", ".join(o.name for o in system.info.outputs)
+        raise DatasetError(f"{dataset.name}: no output of {system.kind} was measured; expected one of {outputs}")
     return found
 
 
@@ -180,11 +180,16 @@ def _result(
     nominal = [dataset.parameters[n].value if n in dataset.parameters else 0.0 for n in names]
     table = pd.DataFrame(
         {
-            "value": value, "nominal": nominal, "sd": believed.sd, "ci95_lower": believed.lower,
-            "ci95_upper": believed.upper, "unit": [system.unit(n) for n in names], "at_bound": found["at_bound"],
+            "value": value,
+            "nominal": nominal,
+            "sd": believed.sd,
+            "ci95_lower": believed.lower,
+            "ci95_upper": believed.upper,
+            "unit": [system.unit(n) for n in names],
+            "at_bound": found["at_bound"],
         },
         index=pd.Index(names, name="parameter"),
-    )  # fmt: skip
+    )
     return Identification(
         system=system.with_parameters(dict(zip(names, value.tolist(), strict=True))),
         parameters=table,

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from tendonlab.data import Controller, Dataset, Experiment
     from tendonlab.trajectory import Trajectory
 
+_LEVEL, _MEMORY = 2, 16  # bits of an effect's `roles`: adds to dry friction; shapes what the levels beside it give
+
 
 @dataclass(frozen=True, kw_only=True)
 class System:
@@ -31,23 +33,15 @@ class System:
     controller: Controller | None = None
 
     def __post_init__(self) -> None:
-        info = self.info
         for name in self.effects:
-            effect = info.effect(name)
-            needs = [e.name for e in info.effects if e.element == effect.element and e.roles & 2]
-            if effect.roles & 16 and not set(needs) & set(self.effects):
-                raise ParameterError(f"{name} takes over the dry friction of its slot: expected one of {', '.join(needs)} beside it")
+            self._require_company(name)
         known = self._own_names()
         for name, value in self.parameters.items():
             if name not in known:
-                raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {nearest(name, known)}")
+                offer = nearest(name, known)
+                raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
         for name in known:
-            row = info.parameter(name)
-            value = self.parameters.get(name, row.typical if row.purpose == "share" else None)
-            if value is None:
-                raise ParameterError(f"{name}: missing; expected a value in [{row.lower}, {row.upper}] {self.unit(name)} ({row.meaning})")
-            if not row.lower <= value <= row.upper:
-                raise ParameterError(f"{name} = {value}: expected a value in [{row.lower}, {row.upper}] {self.unit(name)}")
+            self._require_within(name)
 
     @classmethod
     def from_dataset(cls, dataset: Dataset) -> System:
@@ -104,10 +98,16 @@ class System:
 
     def active(self, *, keep_zero: bool = False) -> list[bool]:
         """One flag an effect of the core. One whose amplitude is exactly 0 is left out, unless `keep_zero`."""
-        return [e.structural or (e.name in self.effects and (keep_zero or not self._vanishes(e.name))) for e in self.info.effects]
+        acts = {name for name in self.effects if keep_zero or not self._vanishes(name)}
+        return [e.structural or e.name in acts for e in self.info.effects]
 
     def simulate(
-        self, experiment: Experiment | pd.DataFrame, *, tolerance: float = 1e-6, ports: bool = False, replay: str = "auto"
+        self,
+        experiment: Experiment | pd.DataFrame,
+        *,
+        tolerance: float = 1e-6,
+        ports: bool = False,
+        replay: str = "auto",
     ) -> Trajectory:
         """Simulate what `experiment` applied, and give outputs at its instants.
 
@@ -121,16 +121,34 @@ class System:
 
     def to_dict(self) -> dict[str, Any]:
         """Kind, axis, effects and parameters as plain types."""
-        return {"kind": self.kind, "axis": self.axis, "effects": list(self.effects), "parameters": dict(self.parameters)}
+        effects, parameters = list(self.effects), dict(self.parameters)
+        return {"kind": self.kind, "axis": self.axis, "effects": effects, "parameters": parameters}
 
     def __repr__(self) -> str:
         return f"System({self.kind}, {self.axis}, effects: {', '.join(self.effects) or 'none'})"
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{escape(n)}</td><td>{v:.6g}</td><td>{escape(self.unit(n))}</td></tr>" for n, v in self.parameters.items()
-        )
+        cells = [(escape(name), f"{value:.6g}", escape(self.unit(name))) for name, value in self.parameters.items()]
+        rows = "".join(f"<tr><td>{name}</td><td>{value}</td><td>{unit}</td></tr>" for name, value, unit in cells)
         return f"<p>{escape(repr(self))}</p><table><tr><th>parameter</th><th>value</th><th>unit</th></tr>{rows}</table>"
+
+    def _require_company(self, name: str) -> None:
+        """Raises where an effect shapes dry friction (Role::memory) and no level beside it gives any."""
+        effect = self.info.effect(name)
+        levels = [e.name for e in self.info.effects if e.element == effect.element and e.roles & _LEVEL]
+        if effect.roles & _MEMORY and not set(levels) & set(self.effects):
+            told = f"expected one of {', '.join(levels)} beside it"
+            raise ParameterError(f"{name} takes over the dry friction of its slot: {told}")
+
+    def _require_within(self, name: str) -> None:
+        """Raises where a parameter has no value, or one outside its bounds."""
+        row = self.info.parameter(name)
+        expected = f"expected a value in [{row.lower}, {row.upper}] {self.unit(name)}"
+        if name not in self.parameters and row.purpose != "share":
+            raise ParameterError(f"{name}: missing; {expected} ({row.meaning})")
+        value = self.parameters.get(name, row.typical)
+        if not row.lower <= value <= row.upper:
+            raise ParameterError(f"{name} = {value}: {expected}")
 
     def _own_names(self) -> list[str]:
         """Parameters of the system itself, of what is structural, and of its effects."""

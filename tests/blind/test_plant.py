@@ -157,9 +157,14 @@ def test_actuation_gain_offset_and_sensor_bias():
 
 def test_converges_with_the_step():
     rig = lanes(
-        gravity_torque=1.1, cable_damping=0.05, motor_coulomb=3e-3, joint_coulomb=0.05, joint_viscous=0.02,
-        joint_static_excess=0.03, joint_stribeck_velocity=0.05,
-    )  # fmt: skip
+        gravity_torque=1.1,
+        cable_damping=0.05,
+        motor_coulomb=3e-3,
+        joint_coulomb=0.05,
+        joint_viscous=0.02,
+        joint_static_excess=0.03,
+        joint_stribeck_velocity=0.05,
+    )
     fine = follow(rig, step=2.5e-5).outputs[0]
     errors = [np.sqrt(np.mean((follow(rig, step=step).outputs[0] - fine) ** 2)) for step in (4e-4, 2e-4, 1e-4)]
     assert errors[2] < 0.5 * errors[1] < 0.35 * errors[0]  # first order at least, stick and slip included

@@ -154,7 +154,7 @@ def test_blind_is_among_the_commands(capsys: Printed, tmp_path: Path) -> None:
         (["effects", "--system", "two_inertial"], "did you mean 'two_inertia'?"),
         (["datasets", "prepare", "empd"], "'empd' is no public dataset"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_done_is_one_line_and_exit_code_2(
     capsys: Printed, tiny: Path, arguments: list[str], told: str
 ) -> None:

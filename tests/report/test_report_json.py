@@ -13,10 +13,27 @@ from tendonlab.diagnose.result import Diagnosis, EffectFinding, Overlay, plain
 from tendonlab.errors import ParameterError
 
 CONTRACT = [
-    "format", "tendonlab", "dataset", "system", "seed", "seconds", "verdict", "verdict_probability", "replay", "gap",
-    "where", "effects", "sets", "selected", "explained", "indistinguishable", "invisible", "shrinkage",
-    "next_experiments", "warnings",
-]  # fmt: skip
+    "format",
+    "tendonlab",
+    "dataset",
+    "system",
+    "seed",
+    "seconds",
+    "verdict",
+    "verdict_probability",
+    "replay",
+    "gap",
+    "where",
+    "effects",
+    "sets",
+    "selected",
+    "explained",
+    "indistinguishable",
+    "invisible",
+    "shrinkage",
+    "next_experiments",
+    "warnings",
+]
 FURTHER = {"calibrated", "held_out", "split", "details"}
 EFFECT = {"effect", "element", "probability", "parameters", "held_out_gain", "shrinkage"}
 

@@ -125,10 +125,23 @@ def test_a_large_figure_is_embedded_as_png() -> None:
 
 def test_empty_results_still_make_a_page(with_effect: Diagnosis, tmp_path: Path) -> None:
     bare = replace(
-        with_effect, verdict="unknown_effect", gap={}, where={"signals": [], "elements": [], "regimes": []}, effects=(),
-        sets=(), selected=(), explained=None, shrinkage={"from_nominal": None, "from_refitted": None}, overlay=None,
-        where_map=(), held_out=pd.DataFrame(), indistinguishable=(), invisible=(), next_experiments=(), table=None,
-    )  # fmt: skip
+        with_effect,
+        verdict="unknown_effect",
+        gap={},
+        where={"signals": [], "elements": [], "regimes": []},
+        effects=(),
+        sets=(),
+        selected=(),
+        explained=None,
+        shrinkage={"from_nominal": None, "from_refitted": None},
+        overlay=None,
+        where_map=(),
+        held_out=pd.DataFrame(),
+        indistinguishable=(),
+        invisible=(),
+        next_experiments=(),
+        table=None,
+    )
     words = " ".join(read(bare, tmp_path)[1].text)
     assert "No output could be scored" in words
     assert "no effect of the library explains" in words

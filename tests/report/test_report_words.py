@@ -44,10 +44,19 @@ def test_small_words() -> None:
 @pytest.mark.parametrize(
     ("value", "expected"),
     [
-        (0.0502, "0.0502"), (0.05, "0.05"), (1234.0, "1230"), (-0.0, "0"), (-2.5, "−2.5"), (1e-6, "1×10⁻⁶"),
-        (2.5e7, "2.5×10⁷"), (0.99999, "1"), (99999.0, "1×10⁵"), (float("nan"), "–"), (None, "–"),
+        (0.0502, "0.0502"),
+        (0.05, "0.05"),
+        (1234.0, "1230"),
+        (-0.0, "0"),
+        (-2.5, "−2.5"),
+        (1e-6, "1×10⁻⁶"),
+        (2.5e7, "2.5×10⁷"),
+        (0.99999, "1"),
+        (99999.0, "1×10⁵"),
+        (float("nan"), "–"),
+        (None, "–"),
     ],
-)  # fmt: skip
+)
 def test_numbers(value: float | None, expected: str) -> None:
     assert numbers.number(value) == expected
 
