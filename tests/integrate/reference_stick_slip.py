@@ -1,8 +1,9 @@
 """Writes tests/golden/stick_slip.csv: a slowly dragged joint that sticks and slips, by a fixed step of 1 microsecond.
 
-Shares nothing with the library: its own C text, the classical Runge-Kutta method of order 4, modes looked at once a step
-(what reverses within a step is put to rest, what is pushed beyond its level slides from the next step on), so that an
-event is late by at most a step. Run: python reference_stick_slip.py; needs a C compiler; takes about ten seconds."""
+Shares nothing with the library: its own C text, the classical Runge-Kutta method of order 4, modes looked at once a
+step (what reverses within a step is put to rest, what is pushed beyond its level slides from the next step on), so
+that an event is late by at most a step.
+Run: python reference_stick_slip.py; needs a C compiler; takes about ten seconds."""
 
 import ctypes
 import subprocess
@@ -13,11 +14,20 @@ from pathlib import Path
 import numpy as np
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "stick_slip.csv"
-PARAMETERS = dict(
-    motor_inertia=1.2e-4, joint_inertia=0.02, gear_ratio=10.0, cable_stiffness=5.0, cable_damping=0.02, motor_viscous=2e-4,
-    motor_coulomb=3e-3, joint_viscous=0.02, joint_coulomb=0.12, joint_static_excess=0.06, joint_stribeck_velocity=0.05,
-)  # fmt: skip
-LOOP = dict(proportional=0.5, derivative=0.01)
+PARAMETERS = {
+    "motor_inertia": 1.2e-4,
+    "joint_inertia": 0.02,
+    "gear_ratio": 10.0,
+    "cable_stiffness": 5.0,
+    "cable_damping": 0.02,
+    "motor_viscous": 2e-4,
+    "motor_coulomb": 3e-3,
+    "joint_viscous": 0.02,
+    "joint_coulomb": 0.12,
+    "joint_static_excess": 0.06,
+    "joint_stribeck_velocity": 0.05,
+}
+LOOP = {"proportional": 0.5, "derivative": 0.01}
 DRAG = 0.8  # rad/s, of the motor's reference
 END, SPACING = 14.0, 0.02
 
@@ -80,8 +90,8 @@ def dragged(step: float) -> np.ndarray:
     every = round(SPACING / step)
     out = np.zeros((round(END / SPACING) + 1, 3))
     pointer = ctypes.POINTER(ctypes.c_double)
-    run(values.ctypes.data_as(pointer), ctypes.c_double(step), ctypes.c_long(every * (len(out) - 1)), ctypes.c_long(every),
-        out.ctypes.data_as(pointer))  # fmt: skip
+    steps = ctypes.c_long(every * (len(out) - 1))
+    run(values.ctypes.data_as(pointer), ctypes.c_double(step), steps, ctypes.c_long(every), out.ctypes.data_as(pointer))
     return out
 
 

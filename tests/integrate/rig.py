@@ -14,11 +14,21 @@ from tendonlab.signals import hold, linear, smooth
 from tendonlab.system import System
 
 MAKE = {"hold": hold, "linear": linear, "smooth": smooth}
-INERTIAS: dict[str, float] = dict(
-    motor_inertia=1.2e-4, joint_inertia=0.02, gear_ratio=10.0, gravity_torque=0.0, cable_stiffness=50.0, cable_damping=0.05
-)
+INERTIAS: dict[str, float] = {
+    "motor_inertia": 1.2e-4,
+    "joint_inertia": 0.02,
+    "gear_ratio": 10.0,
+    "gravity_torque": 0.0,
+    "cable_stiffness": 50.0,
+    "cable_damping": 0.05,
+}
 NOMINAL = ("motor:coulomb", "motor:viscous", "joint:coulomb", "joint:viscous")
-FRICTION: dict[str, float] = dict(motor_viscous=2e-4, motor_coulomb=3e-3, joint_viscous=0.02, joint_coulomb=0.05)
+FRICTION: dict[str, float] = {
+    "motor_viscous": 2e-4,
+    "motor_coulomb": 3e-3,
+    "joint_viscous": 0.02,
+    "joint_coulomb": 0.05,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,16 +117,24 @@ def _signal(time: np.ndarray, values: np.ndarray | float, kind: str) -> Any:
 
 def controller(reference: Any, **changes: Any) -> Any:
     """A loop on the first degree of freedom: u = P (r - y) + D (w r' - y')."""
-    settings: dict[str, Any] = dict(
-        kind="controller", axis=0, output=0, proportional=0.05, derivative=0.002, reference_weight=1.0, limit=np.inf,
-        sample_time=0.0, reference=reference, disturbance=_core.Signal(),
-    )  # fmt: skip
+    settings: dict[str, Any] = {
+        "kind": "controller",
+        "axis": 0,
+        "output": 0,
+        "proportional": 0.05,
+        "derivative": 0.002,
+        "reference_weight": 1.0,
+        "limit": np.inf,
+        "sample_time": 0.0,
+        "reference": reference,
+        "disturbance": _core.Signal(),
+    }
     return _core.Loop(**{**settings, **changes})
 
 
 def differences(system: System, name: str, time: np.ndarray, *args: Any, step: float, **options: Any) -> np.ndarray:
-    """Central differences of all outputs by one parameter or part of the initial state, of order four, (outputs, samples):
-    the error of the stepper, 1e-12, divided by the step stays well below 1e-5 of the derivative."""
+    """Central differences, of order four, of all outputs by a parameter or part of the initial state, shape (outputs,
+    samples): the error of the stepper, 1e-12, divided by the step stays well below 1e-5 of the derivative."""
 
     def at(shift: float) -> np.ndarray:
         if name.startswith(("position", "velocity")):

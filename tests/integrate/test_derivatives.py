@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from integrate.rig import FRICTION, NOMINAL, controller, differences, joint, pair, relative, run
 
+from integrate.rig import FRICTION, NOMINAL, controller, differences, joint, pair, relative, run
 from tendonlab.signals import hold, linear, smooth
 
 T = np.linspace(0.0, 2.0, 401)
@@ -12,8 +12,8 @@ TIGHT = 1e-12  # of the differenced runs
 
 
 def check(system, by, command=COMMAND, *, step=1e-4, tolerance=1e-10, bound=1e-5, least=1, time=T, **options):
-    """Each derivative, as relative rms of each output that it moves. `step`: relative to the parameter, or absolute where
-    that is 0. The stepper is run at 1e-10, so that its own error stays well below `bound`."""
+    """Each derivative, as relative rms of each output that it moves. `step`: relative to the parameter, or absolute
+    where that is 0. The stepper is run at 1e-10, so that its own error stays well below `bound`."""
     exact = run(system, time, command, by=by, tolerance=tolerance, **options)
     assert exact.events >= least
     worst = {}
@@ -22,7 +22,11 @@ def check(system, by, command=COMMAND, *, step=1e-4, tolerance=1e-10, bound=1e-5
         found = differences(system, name, time, command, step=step * value, tolerance=TIGHT, **options)
         # an output that a parameter does not move shows the noise of the differences: 1e-12 of the output over the step
         noise = 1e-7 * np.sqrt(np.mean(exact.table**2, axis=1)) / value
-        errors = [relative(g, d) for g, d, n in zip(exact.gradient[name], found, noise, strict=True) if np.max(abs(d)) > n or np.max(abs(g)) > n]
+        errors = [
+            relative(g, d)
+            for g, d, n in zip(exact.gradient[name], found, noise, strict=True)
+            if np.max(abs(d)) > n or np.max(abs(g)) > n
+        ]
         worst[name] = max(errors, default=np.inf)
     assert {name: error for name, error in worst.items() if not error <= bound} == {}
 
@@ -37,8 +41,9 @@ def test_release_slide_and_stop_of_a_block():
 def test_stribeck_asymmetry_and_load_of_a_block():
     t = np.linspace(0.0, 2.0, 401)
     effects = ("joint:coulomb", "joint:viscous", "joint:stribeck", "joint:asymmetry", "joint:load_dependence")
-    system = joint(effects, coulomb=0.6, viscous=0.3, gravity_torque=0.5, joint_static_excess=0.3, joint_load_dependence=0.1,
-                   joint_stribeck_velocity=0.05, joint_level_asymmetry=0.15, joint_viscous_asymmetry=0.05)  # fmt: skip
+    system = joint(effects, coulomb=0.6, viscous=0.3, gravity_torque=0.5, joint_static_excess=0.3,
+                   joint_load_dependence=0.1, joint_stribeck_velocity=0.05, joint_level_asymmetry=0.15,
+                   joint_viscous_asymmetry=0.05)  # fmt: skip
     check(system, list(system.parameters), 1.7 * np.sin(2 * np.pi * t), time=t, step=2e-5, least=4)
 
 
@@ -46,7 +51,15 @@ def test_reversals_of_a_sliding_block():
     """The push exceeds the level at each reversal: it never sticks."""
     t = np.linspace(0.0, 2.0, 401)
     system = joint(("joint:coulomb",), coulomb=0.2)
-    check(system, ["inertia", "coulomb", "position0", "velocity0"], 2.0 * np.cos(2 * np.pi * t), time=t, step=1e-6, velocity=[0.123], least=3)
+    check(
+        system,
+        ["inertia", "coulomb", "position0", "velocity0"],
+        2.0 * np.cos(2 * np.pi * t),
+        time=t,
+        step=1e-6,
+        velocity=[0.123],
+        least=3,
+    )
 
 
 def test_presliding_through_reversals():
@@ -75,15 +88,38 @@ def test_stick_and_slip_of_a_pair():
 
 def test_gravity_and_initial_state_of_a_pair():
     system = pair(NOMINAL, **FRICTION).with_parameters({"gravity_torque": 1.1})
-    start = dict(position=[1.0, 0.12], velocity=[2.0, 0.3])
+    start = {"position": [1.0, 0.12], "velocity": [2.0, 0.3]}
     check(system, ["gravity_torque", "joint_inertia", "position0", "position1"], **start, step=1e-5, least=4)
     check(system, ["velocity0", "velocity1"], **start, step=1e-4, least=4)
 
 
 def test_backlash_edges():
     system = pair((*NOMINAL, "cable:backlash"), **FRICTION, cable_backlash=0.01)
-    by = ["cable_backlash", "cable_stiffness", "cable_damping", "gear_ratio", "motor_inertia", "joint_coulomb", "motor_coulomb"]
+    by = [
+        "cable_backlash",
+        "cable_stiffness",
+        "cable_damping",
+        "gear_ratio",
+        "motor_inertia",
+        "joint_coulomb",
+        "motor_coulomb",
+    ]
     check(system, by, step=1e-5, least=10)
+
+
+def test_gap_of_zero_has_a_derivative():
+    """Both flanks are passed at once, each with its own jump. The motor leaves the middle of the gap from rest: the
+    motion goes with D b + E b^(3/2), and the differences are those that E drops out of."""
+    system = pair((*NOMINAL, "cable:backlash"), **FRICTION, cable_backlash=0.0)
+    exact = run(system, T, COMMAND, by=["cable_backlash"], tolerance=1e-10, keep_zero=True).gradient["cable_backlash"]
+    step = 3e-8
+    base, one, four = (
+        run(system.with_parameters({"cable_backlash": k * step}), T, COMMAND, tolerance=TIGHT, keep_zero=True).table
+        for k in (0, 1, 4)
+    )
+    found = (8.0 * (one - base) - (four - base)) / (4.0 * step)
+    errors = [relative(a, b) for a, b in zip(exact, found, strict=True)]
+    assert max(errors) < 1e-4  # what is left of the differences is of first order in the step
 
 
 MANY = (*NOMINAL, "joint:presliding", "joint:stribeck", "joint:asymmetry", "actuation:gain_error", "actuation:offset")
@@ -102,8 +138,8 @@ def test_many_effects_at_once():
 
 
 def test_friction_by_a_load_that_changes_sign():
-    """The stepper does not land on the kink of |load|: a step across it keeps an error of first order in its derivative,
-    hence the tolerance of 1e-11 (at 1e-9 it is 3e-5)."""
+    """The stepper does not land on the kink of |load|: a step across it keeps an error of first order in its
+    derivative, hence the tolerance of 1e-11 (at 1e-9 it is 3e-5)."""
     effects = (*MANY, "motor:load_dependence", "contact:load_dependence")
     system = pair(effects, **VALUES, motor_load_dependence=0.03, contact_load_dependence=0.05)
     check(system, ["motor_load_dependence", "contact_load_dependence"], step=1e-4, tolerance=1e-11, least=6)
@@ -125,7 +161,9 @@ def test_held_command_with_delay():
 
 def test_held_known_torque_does_not_move_with_the_delay_of_the_command():
     system = pair((*NOMINAL, "actuation:delay"), **FRICTION, actuation_delay=0.0047)
-    check(system, ["actuation_delay", "motor_inertia"], COMMAND, known=held(0.3 * np.sin(5.0 * T)), kind="hold", step=2e-5)
+    check(
+        system, ["actuation_delay", "motor_inertia"], COMMAND, known=held(0.3 * np.sin(5.0 * T)), kind="hold", step=2e-5
+    )
 
 
 def test_smooth_command_with_delay():
@@ -135,13 +173,14 @@ def test_smooth_command_with_delay():
 
 def test_sensors():
     system = pair((*NOMINAL, "sensor.motor_angle:delay", "sensor.joint_angle:bias", "sensor.joint_angle:delay"),
-                  **FRICTION, sensor__motor_angle_delay=0.003, sensor__joint_angle_bias=0.01, sensor__joint_angle_delay=0.0121)  # fmt: skip
+                  **FRICTION, sensor__motor_angle_delay=0.003, sensor__joint_angle_bias=0.01,
+                  sensor__joint_angle_delay=0.0121)  # fmt: skip
     by = ["sensor.motor_angle_delay", "sensor.joint_angle_bias", "sensor.joint_angle_delay", "motor_coulomb"]
     check(system, by, 0.2 * COMMAND + 0.06 * np.sin(20.0 * T), step=1e-3)
 
 
 REFERENCE = smooth(T, 3.0 * np.sin(2 * np.pi * 0.8 * T))
-LATE = dict(actuation_delay=0.0047, actuation_gain_error=0.1, actuation_offset=0.002)
+LATE = {"actuation_delay": 0.0047, "actuation_gain_error": 0.1, "actuation_offset": 0.002}
 
 
 def late(**more):
@@ -156,8 +195,8 @@ BY_LATE = [*LATE, "sensor.motor_angle_delay", "sensor.motor_angle_bias", "motor_
 
 
 def test_loop_in_continuous_time():
-    check(pair(NOMINAL, **FRICTION), ["motor_inertia", "motor_coulomb", "joint_viscous", "cable_stiffness", "gear_ratio"],
-          loop=controller(REFERENCE))  # fmt: skip
+    by = ["motor_inertia", "motor_coulomb", "joint_viscous", "cable_stiffness", "gear_ratio"]
+    check(pair(NOMINAL, **FRICTION), by, loop=controller(REFERENCE))
 
 
 def test_saturating_loop():
@@ -193,15 +232,18 @@ def test_derivatives_where_a_delay_is_still_zero(kind, loop):
     """A delay that is off has a derivative too: against one-sided differences of second order."""
     system = pair((*NOMINAL, "actuation:delay", "sensor.motor_angle:delay"), **FRICTION, actuation_delay=0.0,
                   sensor__motor_angle_delay=0.0)  # fmt: skip
-    reference = (hold if loop == "held" else smooth if loop == "continuous" else linear)(T, 3.0 * np.sin(2 * np.pi * 0.8 * T))
+    reference = (hold if loop == "held" else smooth if loop == "continuous" else linear)(
+        T, 3.0 * np.sin(2 * np.pi * 0.8 * T)
+    )
     closed = controller(reference, sample_time=0.004 if loop == "sampled" else 0.0)
-    options = dict(kind=kind, loop=None if loop == "open" else closed, keep_zero=True)
+    options = {"kind": kind, "loop": None if loop == "open" else closed, "keep_zero": True}
     by = ["actuation_delay", "sensor.motor_angle_delay"]
     exact = run(system, T, held(COMMAND), by=by, tolerance=1e-10, **options)
     for name in by:
         step = 2e-6
         base, one, two = (
-            run(system.with_parameters({name: k * step}), T, held(COMMAND), tolerance=TIGHT, **options).table for k in (0, 1, 2)
+            run(system.with_parameters({name: k * step}), T, held(COMMAND), tolerance=TIGHT, **options).table
+            for k in (0, 1, 2)
         )
         found = (-3.0 * base + 4.0 * one - two) / (2.0 * step)
         moved = [i for i, d in enumerate(found) if np.max(abs(d)) > 1e-5]  # below is the noise of 1e-12 over the step

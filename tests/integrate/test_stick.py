@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from integrate.rig import FRICTION, NOMINAL, joint, pair, run
 
 DRY = ("joint:coulomb",)

@@ -4,9 +4,9 @@ import re
 
 import numpy as np
 import pytest
+
 from integrate.reference_stick_slip import DRAG, GOLDEN, LOOP, PARAMETERS
 from integrate.rig import NOMINAL, controller, pair, relative, run
-
 from tendonlab.signals import linear
 
 EFFECTS = (*NOMINAL, "joint:stribeck")
@@ -39,11 +39,12 @@ def test_joint_is_exactly_at_rest_while_it_sticks(reference):
     sticks = velocity == 0.0
     assert 0.3 < np.mean(sticks) < 0.99
     assert np.all(np.abs(force[sticks]) <= 0.18 * (1 + 1e-9))  # its level at rest
-    assert force[sticks] == pytest.approx(done["cable_torque"][sticks], abs=1e-9)  # no gravity: friction holds the cable
+    # no gravity: friction holds the cable
+    assert force[sticks] == pytest.approx(done["cable_torque"][sticks], abs=1e-9)
 
 
 def test_reference_has_converged():
-    """The file says by how much a step of 2 us differs, output by output: far less than what is asked of the stepper."""
+    """The file says by how much a step of 2 us differs, a number an output: far less than what is asked of ours."""
     said = [float(x) for x in re.findall(r"\d\.\de-\d\d", GOLDEN.read_text().splitlines()[1])]
     assert len(said) == 3
     assert max(said) < 1e-8

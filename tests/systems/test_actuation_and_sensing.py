@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from integrate.rig import FRICTION, NOMINAL, joint, pair, run
 
 T = np.linspace(0.0, 1.0, 501)
@@ -15,7 +16,9 @@ def pulses(t):
 def test_delay_of_the_command_shifts_the_response(kind):
     """A rig at rest that is late by ten samples does the same ten samples later."""
     on_time = run(pair(NOMINAL, **FRICTION), T, pulses(T), kind=kind, tolerance=1e-11)
-    late = run(pair((*NOMINAL, "actuation:delay"), **FRICTION, actuation_delay=0.02), T, pulses(T), kind=kind, tolerance=1e-11)
+    late = run(
+        pair((*NOMINAL, "actuation:delay"), **FRICTION, actuation_delay=0.02), T, pulses(T), kind=kind, tolerance=1e-11
+    )
     assert np.ptp(on_time["joint_angle"]) > 0.05
     for name in ("motor_angle", "joint_angle", "cable_torque"):
         assert np.all(late[name][:55] == 0.0)
@@ -36,7 +39,12 @@ def test_gain_error_comes_before_the_offset():
 
 def test_bias_adds_to_its_sensor_alone():
     plain = run(pair(NOMINAL, **FRICTION), T, pulses(T), kind="hold")
-    biased = run(pair((*NOMINAL, "sensor.joint_angle:bias"), **FRICTION, sensor__joint_angle_bias=0.25), T, pulses(T), kind="hold")
+    biased = run(
+        pair((*NOMINAL, "sensor.joint_angle:bias"), **FRICTION, sensor__joint_angle_bias=0.25),
+        T,
+        pulses(T),
+        kind="hold",
+    )
     assert np.array_equal(biased["joint_angle"], plain["joint_angle"] + 0.25)
     assert np.array_equal(biased["motor_angle"], plain["motor_angle"])
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from integrate.rig import FRICTION, INERTIAS, NOMINAL, joint, pair, run
 from scipy.integrate import solve_ivp
+
+from integrate.rig import FRICTION, INERTIAS, NOMINAL, joint, pair, run
 
 TIGHT = 1e-10
 
@@ -78,15 +79,15 @@ def test_steady_bristle_friction_is_that_of_the_dry_laws():
     t = np.linspace(0.0, 2.0, 21)
     for speed in (-1.0, -0.1, -0.02, 0.02, 0.1, 1.0):
         level = np.sign(speed) * (1.0 + 0.5 * np.exp(-((speed / 0.05) ** 2)))
-        system = joint(("joint:coulomb", "joint:viscous", "joint:stribeck", "joint:presliding"), coulomb=1.0, viscous=0.4,
-                       joint_static_excess=0.5, joint_stribeck_velocity=0.05, joint_bristle_stiffness=1e4,
+        system = joint(("joint:coulomb", "joint:viscous", "joint:stribeck", "joint:presliding"), coulomb=1.0,
+                       viscous=0.4, joint_static_excess=0.5, joint_stribeck_velocity=0.05, joint_bristle_stiffness=1e4,
                        joint_bristle_damping=10.0).with_parameters({"inertia": 1e6})  # fmt: skip
         done = run(system, t, 0.0, velocity=[speed], ports=True)  # too heavy to slow down: 1e-6 of the speed
         assert done.ports["joint"][3][-1] == pytest.approx(level + 0.4 * speed, rel=1e-4)
 
 
 def test_presliding_stiffness_is_the_slope_of_force_over_motion():
-    """Pushed by 2 % of the level: friction over displacement is sigma_0, within the 2 % that the bristle has yielded."""
+    """Pushed by 2 % of the level: friction over displacement is sigma_0, within the 2 % that it has yielded."""
     t = np.linspace(0.0, 1.0, 101)
     system = joint(("joint:coulomb", "joint:viscous", "joint:presliding"), coulomb=1.0, viscous=100.0,
                    joint_bristle_stiffness=500.0, joint_bristle_damping=40.0)  # fmt: skip
@@ -113,8 +114,18 @@ def test_motor_crosses_the_gap_before_the_joint_moves(sign):
 def test_gap_is_crossed_whole_on_reversal():
     """A heavy joint, dragged slowly forth and back: between pulling and pushing the motor turns N times the gap."""
     t = np.linspace(0.0, 2.0, 4001)
-    system = pair((*NOMINAL, "cable:backlash"), **FRICTION, cable_backlash=0.02).with_parameters({"joint_coulomb": 0.2, "motor_viscous": 0.02})
-    done = run(system, t, 0.012 * np.sign(np.sin(np.pi * t) + 1e-12), kind="hold", position=[0.1, 0.0], ports=True, tolerance=TIGHT)
+    system = pair((*NOMINAL, "cable:backlash"), **FRICTION, cable_backlash=0.02).with_parameters(
+        {"joint_coulomb": 0.2, "motor_viscous": 0.02}
+    )
+    done = run(
+        system,
+        t,
+        0.012 * np.sign(np.sin(np.pi * t) + 1e-12),
+        kind="hold",
+        position=[0.1, 0.0],
+        ports=True,
+        tolerance=TIGHT,
+    )
     assert np.all(done["joint_angle"] == 0.0)  # never pulled by more than 0.1
     loose = done["cable_torque"] == 0.0
     edges = done["motor_angle"][np.flatnonzero(np.diff(loose.astype(int)))]
@@ -135,7 +146,9 @@ def test_load_dependence_is_friction_in_proportion_to_load():
 
 def test_asymmetry_brakes_more_one_way():
     t = np.linspace(0.0, 1.0, 11)
-    system = joint(("joint:coulomb", "joint:asymmetry"), coulomb=0.5, joint_level_asymmetry=0.2, joint_viscous_asymmetry=0.0)
+    system = joint(
+        ("joint:coulomb", "joint:asymmetry"), coulomb=0.5, joint_level_asymmetry=0.2, joint_viscous_asymmetry=0.0
+    )
     forth, back = (run(system, t, velocity=[v])["joint_velocity"] for v in (2.0, -2.0))
     assert forth == pytest.approx(2.0 - 0.6 * t, rel=1e-12)
     assert back == pytest.approx(-2.0 + 0.4 * t, rel=1e-12)
@@ -165,7 +178,9 @@ def test_pair_agrees_with_an_independent_integrator():
                 (f - 0.02 * wl - 1.1 * np.sin(ql) + known) / p["joint_inertia"]]  # fmt: skip
 
     other = solve_ivp(rate, (0.0, 2.0), [1.0, 0.0, 0.2, 0.5], method="DOP853", t_eval=t, rtol=1e-11, atol=1e-12).y
-    system = pair(("motor:viscous", "joint:viscous"), motor_viscous=2e-4, joint_viscous=0.02).with_parameters({"gravity_torque": 1.1})
+    system = pair(("motor:viscous", "joint:viscous"), motor_viscous=2e-4, joint_viscous=0.02).with_parameters(
+        {"gravity_torque": 1.1}
+    )
     done = run(system, t, 0.05 * np.sin(7.0 * t), known=0.2 * np.cos(3.0 * t), position=[1.0, 0.2], velocity=[0.0, 0.5])
     # a cubic spline of 5 ms misses sin(7 t) by (7 h)^4 / 384 = 4e-9
     assert done["motor_angle"] == pytest.approx(other[0], abs=1e-6)

@@ -96,14 +96,21 @@ class Contact {
     return sum;
   }
 
-  /// Positive while mode m holds; for a sticking port the share of its level that is left.
+  /// To which side of its gap mode m has moved; 0 where it has none.
+  double toward(int m, const Motion<T, n>& at) const {
+    if constexpr (System::sides > 0)
+      if (m >= directions && m < num_modes) return plain(stretch(m, at)) > 0 ? 1.0 : -1.0;
+    return 0.0;
+  }
+  /// Positive while mode m holds; for a sticking port the share of its level that is left, inside a gap the way to the
+  /// edge on the side `toward`: a step that begins on one edge may well end beyond the other.
   template <class Inputs>
-  double margin(int m, const Y& y, const F& frame, const Inputs& in) const {
+  double margin(int m, const Y& y, double toward, const F& frame, const Inputs& in) const {
     const double mode = frame.mode[static_cast<std::size_t>(m)];
     if constexpr (System::sides > 0)
       if (m >= directions) {
         const double g = plain(stretch(m, y.at)), gap = plain(half_gap(m));
-        return mode == 0.0 ? gap - std::fabs(g) : mode * g - gap;
+        return mode == 0.0 ? gap - toward * g : mode * g - gap;
       }
     if (mode != 0.0) return mode * plain(sliding_velocity(m, y.at));
     const double push = holding(y, frame, in)[static_cast<std::size_t>(m)];
@@ -123,8 +130,8 @@ class Contact {
     }
   }
 
-  /// Releases whatever cannot hold, the worst first, until all that sticks can; ports in `turning` are at rest and choose
-  /// whether to stick or where to slide.
+  /// Releases whatever cannot hold, the worst first, until all that sticks can; ports in `turning` are at rest and
+  /// choose whether to stick or where to slide.
   template <class Inputs>
   void settle(const Y& y, F& frame, const std::array<bool, num_modes>& turning, const Inputs& in) const {
     for (int m = 0; m < directions; ++m)
@@ -170,7 +177,8 @@ class Contact {
       row[j] = column[j] = T(0.0);
       for (int l = 0; l < n; ++l) {
         row[j] = row[j] + system.lever[port][l] * frame.keep[l][j];
-        column[j] = column[j] + frame.keep[j][l] * (system.inverse_inertia[static_cast<std::size_t>(l)] * system.lever[port][l]);
+        column[j] = column[j] +
+                    frame.keep[j][l] * (system.inverse_inertia[static_cast<std::size_t>(l)] * system.lever[port][l]);
       }
     }
     for (int j = 0; j < n; ++j) pivot = pivot + system.lever[port][j] * column[j];

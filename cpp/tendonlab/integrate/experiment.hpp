@@ -6,7 +6,9 @@
 #include "tendonlab/integrate/signal.hpp"
 
 namespace tendonlab::integrate {
-/// How the command of the actuator comes about. u: command, r: reference, y: reading of the looped sensor.
+/// How the command of the actuator comes about. u: command, r: reference, y: reading of the looped sensor. Before the
+/// record began all was as at its first sample: so a command that is late starts with the first one, and a loop that
+/// looks back finds the initial state.
 struct Loop {
   enum class Kind {
     open,       ///< u as logged
@@ -24,8 +26,8 @@ struct Loop {
 
 /// One experiment as the simulator needs it.
 struct Experiment {
-  std::vector<double> time;              ///< instants of the samples, s, increasing
-  std::vector<Signal> inputs;            ///< in the order of the system's inputs; empty ones are zero
+  std::vector<double> time;    ///< instants of the samples, s, increasing
+  std::vector<Signal> inputs;  ///< in the order of the system's inputs; empty ones are zero
   Loop loop;
   std::vector<double> position, velocity;  ///< initial state, a degree of freedom each
 };

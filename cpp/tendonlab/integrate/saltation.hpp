@@ -9,18 +9,19 @@ class Jump {
   static constexpr int n = System::dof, nz = memories<System>;
 
  public:
-  /// Before the modes change: how the instant of the event moves with the parameters. mode -1: a jump of the inputs.
+  /// Before the modes change: how the instant of the event moves with the parameters. mode -1: a jump of the inputs;
+  /// `toward`: the side on which a gap is left.
   template <class Simulation>
-  Jump(const Simulation& s, int mode) {
+  Jump(const Simulation& s, int mode, double toward) {
     if constexpr (!std::is_same_v<T, double>) {
       before = rate(s.system, s.y, s.frame, s.drive);
       moves = T(0.0) * s.drive.late;
       if (mode < 0)
         moves = s.drive.late;  // the command is late by a parameter: so is its jump
       else
-        moves = of_guard(s, mode);
+        moves = of_guard(s, mode, toward);
     } else {
-      static_cast<void>(s), static_cast<void>(mode);
+      static_cast<void>(s), static_cast<void>(mode), static_cast<void>(toward);
     }
   }
   template <class Simulation>
@@ -42,7 +43,7 @@ class Jump {
   }
   /// dt/dp = -g_p / g_t of the guard g whose root the event is; its value is of no interest.
   template <class Simulation>
-  T of_guard(const Simulation& s, int mode) const {
+  T of_guard(const Simulation& s, int mode, double toward) const {
     const auto& at = s.y.at;
     if (mode < System::directions) {
       if (s.frame.mode[static_cast<std::size_t>(mode)] == 0.0) return T(0.0);  // a release: the rate is continuous
@@ -53,7 +54,7 @@ class Jump {
     if (mode >= modes<System>) return T(0.0);  // saturation: the rate is continuous
     systems::Motion<T, n> change;
     change.position = at.velocity;
-    const double side = plain(s.contact.stretch(mode, at)) > 0 ? 1.0 : -1.0;
+    const double flank = s.frame.mode[static_cast<std::size_t>(mode)], side = flank == 0.0 ? toward : flank;
     return quotient(s.contact.stretch(mode, at) - side * s.contact.half_gap(mode),
                     plain(s.contact.stretch(mode, change)));
   }

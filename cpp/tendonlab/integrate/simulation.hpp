@@ -13,7 +13,11 @@ class Simulation {
 
  public:
   Simulation(const System& of, const Experiment& experiment, const Settings& with, Drive<T> inputs)
-      : system(of), settings(with), contact(of), drive(std::move(inputs)), t(experiment.time.front()),
+      : system(of),
+        settings(with),
+        contact(of),
+        drive(std::move(inputs)),
+        t(experiment.time.front()),
         end(experiment.time.back()) {
     h = std::min(1e-4, 0.1 * (end - t));
   }
@@ -43,10 +47,12 @@ class Simulation {
       if (first.stale || (first.mode >= 0 && first.share < 0.97)) {  // dense output is less accurate inside a step
         ++trajectory.rejected;
         retakes = true;
-        if (first.stale && length < 1e-9 * (1.0 + std::fabs(t)))
-          choose_again(first.mode);
-        else if (!first.stale && first.share * length < 1e-13 * (1.0 + std::fabs(t)))
-          ++trajectory.events, pass_event(first.mode);  // nearer than time resolves: it is now
+        const double resolved = 1e-13 * (1.0 + std::fabs(t));
+        const bool now = first.stale ? length < 1e4 * resolved : first.share * length < resolved;
+        if (now && first.stale && first.mode < System::directions)
+          choose_again(first);
+        else if (now)
+          ++trajectory.events, pass_event(first);  // nearer than time resolves
         else
           shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
         continue;
@@ -61,7 +67,7 @@ class Simulation {
       h = lands ? std::max(h, length * wish) : length * wish;
       if (first.mode >= 0) {
         ++trajectory.events;
-        pass_event(first.mode);
+        pass_event(first);
         h = 0.25 * length;
       }
       const bool continues = first.mode < 0 && t < kink;
@@ -74,6 +80,7 @@ class Simulation {
   struct Crossing {
     int mode = -1;
     double share = 2;
+    double toward = 0;   ///< which way a gap is crossed
     bool stale = false;  ///< the step began on its guard, in a mode that does not hold
   };
   static constexpr double on_guard = 1e-13;
@@ -130,8 +137,8 @@ class Simulation {
     return mean_square <= 1.0 ? std::min(6.0, factor) : -factor;
   }
 
-  double margin(int m, const Y& at) const {
-    if (m != saturation) return contact.margin(m, at, frame, drive);
+  double margin(int m, const Y& at, double toward) const {
+    if (m != saturation) return contact.margin(m, at, toward, frame, drive);
     const double u = plain(drive.unlimited(at.at.position, at.at.velocity, at.at.time)), limit = drive.from.loop.limit;
     return drive.side == 0.0 ? limit - std::fabs(u) : drive.side * u - limit;
   }
@@ -141,23 +148,23 @@ class Simulation {
     Crossing first;
     for (int m = 0; m <= saturation; ++m) {
       if (!guarded(m)) continue;
-      const double after = margin(m, s.to);
+      const double toward = contact.toward(m, s.to.at), after = margin(m, s.to, toward);
       if (after >= -on_guard) continue;
-      const double before = margin(m, y);
-      if (before <= on_guard) return {m, 0, true};
-      const double share = root(m, s, before, after);
-      if (share < first.share) first = {m, share, false};
+      const double before = margin(m, y, toward);
+      if (before <= on_guard) return {m, 0, toward, true};
+      const double share = root(m, toward, s, before, after);
+      if (share < first.share) first = {m, share, toward, false};
     }
     return first;
   }
   /// Illinois on the dense output; ends on a point that the secant chose, never on a midpoint.
-  double root(int m, const Step<Y>& s, double low_value, double high_value) const {
+  double root(int m, double toward, const Step<Y>& s, double low_value, double high_value) const {
     double low = 0, high = 1, at = low_value / (low_value - high_value);
     int side = 0;
     for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
       Y state = s.at(at);
       state.at.time = s.from.at.time + at * (plain(s.to.at.time) - plain(s.from.at.time));
-      const double f = margin(m, state);
+      const double f = margin(m, state, toward);
       if (std::fabs(f) <= 1e-14) break;
       if (f < 0) {
         if (side < 0) low_value *= 0.5;
@@ -171,16 +178,17 @@ class Simulation {
     return at;
   }
 
-  /// Changes mode m at its root, and whatever follows from it at the same instant.
-  void pass_event(int m) {
-    const Jump<System, T> jump(*this, m);
-    turn(m);
+  /// Changes a mode at its root, and whatever follows from it at the same instant.
+  void pass_event(const Crossing& at) {
+    const Jump<System, T> jump(*this, at.mode, at.toward);
+    turn(at);
     jump.apply(*this);
     drive.echo(t);
     kink = drive.next_kink(t);
     refresh();
   }
-  void turn(int m) {
+  void turn(const Crossing& at) {
+    const int m = at.mode;
     std::array<bool, num_modes> turning{};
     if (m == saturation) {
       const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time));
@@ -189,7 +197,7 @@ class Simulation {
       turn_direction(m, turning);
     } else if constexpr (System::sides > 0) {
       auto& side = frame.mode[static_cast<std::size_t>(m)];
-      side = side == 0.0 ? (plain(contact.stretch(m, y.at)) > 0 ? 1.0 : -1.0) : 0.0;
+      side = side == 0.0 ? at.toward : 0.0;
     }
     contact.settle(y, frame, turning, drive);
   }
@@ -206,14 +214,14 @@ class Simulation {
     const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time)), limit = drive.from.loop.limit;
     return u > limit ? 1.0 : u < -limit ? -1.0 : 0.0;
   }
-  void choose_again(int m) {
-    turn(m);
+  void choose_again(const Crossing& at) {
+    turn(at);
     refresh();
   }
   void pass_kink() {
     drive.pass_known(t);  // at an instant that no parameter moves
     contact.settle(y, frame, {}, drive);
-    const Jump<System, T> jump(*this, -1);
+    const Jump<System, T> jump(*this, -1, 0.0);
     const bool echoed = drive.hears_echo(t);  // an echo is smoother than what it echoes: it is not followed further
     drive.pass_command(t);
     if (!echoed) drive.echo(t);

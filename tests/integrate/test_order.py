@@ -1,0 +1,140 @@
+"""The error falls in proportion to the tolerance, over decades; what is off changes nothing, bit for bit."""
+
+import numpy as np
+import pytest
+
+from integrate.rig import FRICTION, NOMINAL, controller, joint, pair, relative, run
+from tendonlab.signals import smooth
+
+T = np.linspace(0.0, 2.0, 401)
+COMMAND = 0.06 * np.sin(2 * np.pi * T) + 0.03 * np.sin(2 * np.pi * 2.3 * T + 1.0)
+BRISTLE = {
+    "coulomb": 1.0, "viscous": 0.4, "joint_static_excess": 0.5, "joint_stribeck_velocity": 1e-3,
+    "joint_bristle_stiffness": 1e5, "joint_bristle_damping": 300.0,
+}  # fmt: skip
+LUGRE = ("joint:coulomb", "joint:viscous", "joint:stribeck", "joint:presliding")
+CASES = {
+    "smooth": (pair(("motor:viscous", "joint:viscous"), motor_viscous=2e-4, joint_viscous=0.02), 0.5 * COMMAND, None),
+    "stick and slip": (pair(NOMINAL, **FRICTION), COMMAND, None),
+    "backlash": (pair((*NOMINAL, "cable:backlash"), **FRICTION, cable_backlash=0.01), COMMAND, None),
+    "stribeck": (
+        pair((*NOMINAL, "joint:stribeck"), **FRICTION, joint_static_excess=0.05, joint_stribeck_velocity=0.05),
+        COMMAND, None,
+    ),
+    "bristle": (joint(LUGRE, **BRISTLE), 2.0 * np.sin(2 * np.pi * T), None),
+    "loop": (pair(NOMINAL, **FRICTION), COMMAND, controller(smooth(T, 3.0 * np.sin(5.0 * T)), limit=0.08)),
+    "late loop": (
+        pair((*NOMINAL, "actuation:delay", "sensor.motor_angle:delay"), **FRICTION, actuation_delay=0.004,
+             sensor__motor_angle_delay=0.003), COMMAND, controller(smooth(T, 3.0 * np.sin(5.0 * T))),
+    ),
+}  # fmt: skip
+TOLERANCES = np.array([1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9])
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_error_falls_in_proportion_to_the_tolerance(case):
+    system, command, loop = CASES[case]
+    best = run(system, T, command, loop=loop, tolerance=1e-13).table
+    errors = []
+    for tolerance in TOLERANCES:
+        found = run(system, T, command, loop=loop, tolerance=tolerance).table
+        errors.append(max(relative(a, b) for a, b in zip(found, best, strict=True)))
+    # a delay bounds each step by itself: there looser tolerances do not make it longer
+    asks = (1e-6 if case == "late loop" else 1.0) >= TOLERANCES
+    slope = np.polyfit(np.log10(TOLERANCES[asks]), np.log10(np.array(errors)[asks]), 1)[0]
+    assert 0.8 < slope < 1.3, errors
+    # the error of a run is the errors of its steps added up: not more than a hundred or so of them at the worst spots
+    assert np.all(np.array(errors) < 300.0 * TOLERANCES), errors
+
+
+def test_steps_grow_with_the_fifth_root_of_the_tolerance_or_better():
+    """Order four: a decade of tolerance costs at most 10^(1/4) times the steps."""
+    system, command, _ = CASES["smooth"]
+    attempts = np.array([run(system, T, command, tolerance=t).attempts for t in TOLERANCES])
+    assert np.all(attempts[1:] < 10**0.25 * 1.05 * attempts[:-1])
+
+
+def test_few_attempts_are_rejected():
+    for system, command, loop in CASES.values():
+        done = run(system, T, command, loop=loop, tolerance=1e-6)
+        assert done.rejected < 0.3 * done.attempts + 20
+
+
+AMPLITUDES = {
+    "joint:stribeck": {"joint_static_excess": 0.0, "joint_stribeck_velocity": 0.1},
+    "joint:asymmetry": {"joint_level_asymmetry": 0.0, "joint_viscous_asymmetry": 0.0},
+    "motor:load_dependence": {"motor_load_dependence": 0.0},
+    "contact:load_dependence": {"contact_load_dependence": 0.0},
+    "cable:backlash": {"cable_backlash": 0.0},
+    "actuation:delay": {"actuation_delay": 0.0},
+    "actuation:gain_error": {"actuation_gain_error": 0.0},
+    "actuation:offset": {"actuation_offset": 0.0},
+    "sensor.joint_angle:bias": {"sensor.joint_angle_bias": 0.0},
+    "sensor.joint_angle:delay": {"sensor.joint_angle_delay": 0.0},
+    "joint:presliding": {"joint_presliding_share": 0.0, "joint_bristle_stiffness": 50.0, "joint_bristle_damping": 0.1},
+}
+
+
+@pytest.mark.parametrize("effect", AMPLITUDES)
+def test_off_means_off_bit_for_bit(effect):
+    """An effect with zero amplitude gives the bits of the system without it."""
+    plain = pair(NOMINAL, **FRICTION)
+    off = plain.with_effects({effect: AMPLITUDES[effect]})
+    assert effect in off.effects
+    assert np.array_equal(run(off, T, COMMAND, tolerance=1e-6).table, run(plain, T, COMMAND, tolerance=1e-6).table)
+
+
+@pytest.mark.parametrize("effect", sorted(set(AMPLITUDES) - {"cable:backlash", "joint:presliding"}))
+def test_law_that_runs_at_zero_amplitude_gives_the_same_bits(effect):
+    """The same where the law is evaluated, as it is for its derivative at zero."""
+    plain = pair(NOMINAL, **FRICTION)
+    off = plain.with_effects({effect: AMPLITUDES[effect]})
+    kept = run(off, T, COMMAND, tolerance=1e-6, keep_zero=True).table
+    assert np.array_equal(kept, run(plain, T, COMMAND, tolerance=1e-6).table)
+
+
+@pytest.mark.parametrize("effect", ["cable:backlash", "joint:presliding"])
+def test_law_with_modes_or_memory_at_zero_amplitude_gives_the_same_motion(effect):
+    """A gap of zero still has two flanks to land on, an idle bristle has a state: other steps, same motion."""
+    plain = pair(NOMINAL, **FRICTION)
+    off = plain.with_effects({effect: AMPLITUDES[effect]})
+    kept = run(off, T, COMMAND, tolerance=1e-9, keep_zero=True).table
+    for a, b in zip(kept, run(plain, T, COMMAND, tolerance=1e-9).table, strict=True):
+        assert relative(a, b) < 1e-6
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-14, 1e-12, 1e-10])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+def test_gap_that_is_crossed_at_once_costs_a_few_steps(gap, tolerance):
+    """Flank to flank in less time than doubles resolve: a few attempts for each crossing, and the same motion."""
+    plain = run(pair(NOMINAL, **FRICTION), T, COMMAND, tolerance=tolerance)
+    loose = pair((*NOMINAL, "cable:backlash"), **FRICTION, cable_backlash=gap)
+    found = run(loose, T, COMMAND, tolerance=tolerance, keep_zero=True)
+    assert found.events > plain.events
+    assert found.attempts < plain.attempts + 25 * (found.events - plain.events)
+    for a, b in zip(found.table, plain.table, strict=True):
+        assert relative(a, b) < 20.0 * tolerance + 100.0 * gap
+
+
+def test_derivatives_do_not_change_the_run():
+    """Differentiating is carried along: values agree to rounding, and the steps taken are the same."""
+    system = CASES["stick and slip"][0]
+    plain = run(system, T, COMMAND, tolerance=1e-6)
+    carried = run(system, T, COMMAND, tolerance=1e-6, by=["motor_inertia", "joint_coulomb"])
+    assert carried.attempts == plain.attempts
+    for a, b in zip(carried.table, plain.table, strict=True):
+        assert relative(a, b) < 1e-9
+
+
+def test_same_run_same_bits():
+    system, command, loop = CASES["late loop"]
+    first, second = (run(system, T, command, loop=loop, tolerance=1e-6).table for _ in range(2))
+    assert np.array_equal(first, second)
+
+
+def test_samples_do_not_change_the_steps():
+    """Outputs come from the dense output: asking for fewer gives the same numbers."""
+    system = CASES["stick and slip"][0]
+    every = run(system, T, 0.08, kind="linear", tolerance=1e-6)
+    tenth = run(system, T[::10], 0.08, kind="linear", tolerance=1e-6)
+    assert np.array_equal(every.table[:, ::10], tenth.table)
