@@ -178,3 +178,35 @@ def test_caption_says_what_the_overlay_leaves_out(with_effect: Diagnosis, tmp_pa
     text, _ = read(long, tmp_path)
     assert re.search(r"Shown: 0 to [\d.]+ s of the run.* The 4 outputs that carry most of the gap are drawn", text)
     assert "Shown:" not in read(with_effect, tmp_path)[0]
+
+
+def test_numbers_in_figures_are_those_of_the_tables(with_effect: Diagnosis, tmp_path: Path) -> None:
+    """Coordinates of the drawing are shortened for the page, the text in it is not."""
+    gap = {"joint_angle": {"noise_floor": 0.264e-3, "nominal": 2.3e-3, "refitted": 0.996e-3, "with_effect": 0.348e-3}}
+    text, _ = read(replace(with_effect, gap=gap), tmp_path)
+    assert all(f"{value} mrad" in text for value in ("2.3", "0.996", "0.348"))
+    assert all(f'<td class="n">{value}</td>' in text for value in ("2.3", "0.996"))
+
+
+def test_elements_that_are_ruled_out_share_a_row(with_effect: Diagnosis, tmp_path: Path) -> None:
+    elements = [{"element": name, "probability": p} for name, p in (("joint", 0.9), ("cable", 0.0), ("motor", 0.001))]
+    page = read(replace(with_effect, where={**with_effect.where, "elements": elements}), tmp_path)[1]
+    assert "2 other elements" in page.text
+    assert "Cable" not in page.text
+
+
+def test_the_summary_names_no_regime_that_chance_explains(with_effect: Diagnosis, tmp_path: Path) -> None:
+    regimes = [
+        {"coordinate": "joint_velocity", "range": [0.0, 0.05], "share": 0.4, "p_value": 0.01},
+        {"coordinate": "time", "range": [8.0, 12.0], "share": 0.9, "p_value": 0.2},
+    ]
+    words = " ".join(read(replace(with_effect, where={**with_effect.where, "regimes": regimes}), tmp_path)[1].text)
+    assert "is concentrated at joint velocity 0 to 0.05 rad/s (40 % of the excess)" in words
+
+
+def test_fitted_parameters_and_settings_carry_their_units(with_effect: Diagnosis, tmp_path: Path) -> None:
+    stiffness = {"value": 42.0, "nominal": None, "ci95": [40.0, 44.0], "unit": "N*m/rad"}
+    details = {"parameters": {"cable_stiffness": stiffness}, "noise": {"joint_angle": 2.1e-4}}
+    page = read(replace(with_effect, details=details), tmp_path)[1]
+    assert {"Parameters with the effect", "Cable stiffness ", "(N·m/rad)", "40 to 44"} <= set(page.text)
+    assert "joint angle 210 µrad" in page.text

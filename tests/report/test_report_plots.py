@@ -147,3 +147,16 @@ def test_matplotlib_is_not_loaded_before_it_is_needed() -> None:
     code = "import sys, tendonlab.plot, tendonlab.report, tendonlab.diagnose.result; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+def test_what_is_ruled_out_is_not_drawn(with_effect: Diagnosis) -> None:
+    ax = ranked_effects(with_effect, Figure().subplots())
+    assert len(ax.patches) == 3  # the fourth, a delay, has a probability of 0.002
+
+
+def test_the_likeliest_elements_have_their_maps_drawn(with_effect: Diagnosis) -> None:
+    (joint,) = with_effect.where_map
+    maps = tuple(replace(joint, element=name) for name in ("motor", "contact", "joint"))
+    drawn = draw_all(replace(with_effect, where_map=maps))["where"].svg
+    assert drawn.index("Joint, refitted") < drawn.index("Pulley contact, refitted")
+    assert "Motor, refitted" not in drawn

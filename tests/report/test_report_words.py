@@ -100,3 +100,16 @@ def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> Non
         "(probability 0.04)."
     )
     assert "probability 0.21" in replace(both, sets=()).sentence  # the less certain of the two
+
+
+def test_the_sentence_is_never_surer_than_its_verdict(with_effect: Diagnosis) -> None:
+    doubt = {"no_gap": 0.0, "parameters_only": 0.0, "effect": 0.7, "unknown_effect": 0.3}
+    assert "probability 0.70" in replace(with_effect, verdict_probability=doubt).sentence  # its set alone: 0.93
+
+
+@pytest.mark.parametrize(
+    ("nats", "told"),
+    [(35.2, "expected gain 35 nats"), (7.3e5, "expected gain over 100 nats"), (float("nan"), ""), (None, "")],
+)
+def test_gains_in_words(nats: float | None, told: str) -> None:
+    assert words.gain_words(nats) == told

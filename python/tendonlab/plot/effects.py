@@ -13,13 +13,14 @@ if TYPE_CHECKING:
 
     from tendonlab.diagnose.result import Diagnosis, EffectFinding
 
-_PER_LINE = 2
+_LINES = 2  # parameters below a bar
+_LEAST = 0.005  # probability below which a candidate is not drawn, unless it is selected
 
 
 def ranked_effects(diagnosis: Diagnosis, ax: Axes | None = None, *, count: int = 6) -> Axes:
-    """The `count` most probable effects as bars, those selected in orange, with their parameters and 95 % intervals."""
-    shown = diagnosis.effects[:count]
-    ax = new_axes(width=7.0, height=0.9 + 0.55 * max(1, len(shown))) if ax is None else ax
+    """The likely effects, at most `count`, as bars, those selected in orange, with parameters and 95 % intervals."""
+    shown = likely(diagnosis, count=count)
+    ax = new_axes(width=7.0, height=height(diagnosis, count=count)) if ax is None else ax
     for row, finding in enumerate(shown):
         chosen = finding.name in diagnosis.selected
         ax.barh(row - 0.14, finding.probability, height=0.34, color=COLOURS["with_effect" if chosen else "nominal"])
@@ -38,6 +39,7 @@ def ranked_effects(diagnosis: Diagnosis, ax: Axes | None = None, *, count: int =
             textcoords="offset points",
             va="top",
             fontsize="small",
+            linespacing=1.25,
             color=MUTED,
         )
     tidy(ax, grid="x")
@@ -51,11 +53,23 @@ def ranked_effects(diagnosis: Diagnosis, ax: Axes | None = None, *, count: int =
     return ax
 
 
+def likely(diagnosis: Diagnosis, *, count: int = 6) -> tuple[EffectFinding, ...]:
+    """The candidates worth drawing: those not ruled out, the two best in any case."""
+    ranked = enumerate(diagnosis.effects)
+    kept = [e for place, e in ranked if place < 2 or e.probability >= _LEAST or e.name in diagnosis.selected]
+    return tuple(kept[:count])
+
+
+def height(diagnosis: Diagnosis, *, count: int = 6) -> float:
+    """Inches that a figure of `ranked_effects` needs."""
+    return 0.8 + 0.65 * max(1, len(likely(diagnosis, count=count)))
+
+
 def _parameters(finding: EffectFinding) -> str:
     texts = []
-    for name, found in list(finding.parameters.items())[:_PER_LINE]:
+    for name, found in list(finding.parameters.items())[:_LINES]:
         interval = f" ({span(found['ci95'], 2)})" if found.get("ci95") is not None else ""
         title = parameter_words(name, element=finding.element)
         texts.append(f"{title} {number(found['value'], 2)}{interval} {unit_text(found.get('unit', ''))}".rstrip())
     further = len(finding.parameters) - len(texts)
-    return "; ".join(texts) + (f"; {further} more" if further > 0 else "")
+    return "\n".join(texts) + (f"; {further} more" if further > 0 else "")

@@ -53,7 +53,7 @@ def gap_bars(diagnosis: Diagnosis, ax: Axes | None = None) -> Axes:
 
 def _annotate(ax: Axes, diagnosis: Diagnosis, *, signal: str, stage: str, at: tuple[float, float]) -> None:
     values = diagnosis.gap[signal]
-    factor, unit = prefixed([values["refitted"], values["noise_floor"]], diagnosis.units.get(signal, ""))
+    factor, unit = prefixed(values.values(), diagnosis.units.get(signal, ""))
     text = f"{number(values[stage] * factor)} {unit}".rstrip()
     ax.annotate(text, at, xytext=(4, 0), textcoords="offset points", va="center", fontsize="small", color=INK)
 

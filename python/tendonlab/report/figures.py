@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup, escape
 
 from tendonlab.plot import gap_bars, overlay, ranked_effects, where_map
+from tendonlab.plot.effects import height
 from tendonlab.plot.runs import telling_window
 from tendonlab.plot.style import COLOURS, FIGURE, INK, MUTED, RULE
 from tendonlab.plot.where import colour_bar, shared_scale
@@ -30,7 +31,8 @@ _ALTS = {
     "effects": "Candidate effects by probability",
 }
 LARGEST_SVG = 400_000  # bytes; beyond, the page embeds the PNG
-MOST_DRAWN = 4  # outputs and where maps drawn; the tables list all
+MOST_DRAWN = 4  # outputs drawn; the tables list all
+MOST_MAPS = 2  # where maps, the likeliest elements first: ports of one axis move together and look alike
 _PAGE_COLOURS = {
     INK: "var(--ink)",
     MUTED: "var(--muted)",
@@ -130,11 +132,13 @@ def _overlay(diagnosis: Diagnosis) -> Figure | None:
 def _where(diagnosis: Diagnosis) -> Figure | None:
     from matplotlib.figure import Figure
 
-    maps = diagnosis.where_map[:MOST_DRAWN]
+    sure = {entry["element"]: entry["probability"] for entry in diagnosis.where["elements"]}
+    maps = sorted(diagnosis.where_map, key=lambda one: -sure.get(one.element, 0.0))[:MOST_MAPS]
     if not maps:
         return None
     stages = ("refitted", "with_effect") if diagnosis.selected else ("refitted",)
     figure = Figure(figsize=(6.4 if len(stages) == 2 else 4.4, 2.8 * len(maps)), layout="constrained")
+    figure.set_layout_engine("constrained", h_pad=0.1)
     grid = figure.subplots(len(maps), len(stages), squeeze=False, sharey="row")
     for row, where in zip(grid, maps, strict=True):
         scale = shared_scale(where)
@@ -150,7 +154,7 @@ def _where(diagnosis: Diagnosis) -> Figure | None:
 def _effects(diagnosis: Diagnosis) -> Figure | None:
     if not diagnosis.effects:
         return None
-    figure, ax = _figure(height=0.8 + 0.5 * min(6, len(diagnosis.effects)), width=7.4)
+    figure, ax = _figure(height=height(diagnosis), width=7.4)
     ranked_effects(diagnosis, ax)
     ax.set_ylabel("")
     return figure
@@ -163,13 +167,17 @@ def _figure(*, height: float, width: float = 6.2) -> tuple[Figure, Axes]:
     return figure, figure.subplots()
 
 
+def _with_short_numbers(tag: re.Match[str]) -> str:
+    return re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", tag[0])
+
+
 def _for_page(svg: str, *, prefix: str) -> str:
     """The <svg> element alone: short numbers, colours of the page, ids unique on it, no outside reference."""
     body = svg[svg.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|<!DOCTYPE.*?>", "", body, flags=re.S)
     body = re.sub(r' xmlns:xlink="[^"]*"| version="[^"]*"| xmlns="[^"]*"', "", body)
     body = body.replace("xlink:href", "href")
-    body = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", body)
+    body = re.sub(r"<[^>]*>", _with_short_numbers, body)  # in tags alone: what a text says stays as it is
     used = set(re.findall(r'(?:url\(#|href="#)([\w-]+)', body))
     body = re.sub(r' id="([\w.-]+)"', lambda found: f' id="{prefix}-{found[1]}"' if found[1] in used else "", body)
     body = re.sub(r'(url\(#|href="#)', rf"\g<1>{prefix}-", body)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from tendonlab.diagnose.result import Diagnosis
     from tendonlab.report.figures import Picture
 
+_CLEAR = 0.05  # p-value up to which the summary says that the gap is concentrated in a regime
 _SHOWN = 12  # candidates in the table of the page; report.json has all
 _LEAST = 0.005  # probability below which a candidate without a selected effect is not worth a row of its own
 
@@ -44,6 +45,7 @@ def _environment() -> Environment:
         "listing": words.listing,
         "plainly": _plainly,
         "element": words.element_words,
+        "gain": words.gain_words,
     }
     made.globals |= {"parameter_words": words.parameter_words, "width": _width}
     return made
@@ -60,6 +62,7 @@ def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
             version=version(),
             shown_part=_shown_part(diagnosis),
             most=_where_in_words(diagnosis),
+            elements=_elements(diagnosis),
             verdicts=words.VERDICTS,
             replays=words.REPLAYS,
             facts=_facts(diagnosis),
@@ -68,6 +71,8 @@ def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
             findings=_listed(diagnosis),
             runs=_runs(diagnosis),
             side=_side(diagnosis),
+            fitted=_fitted(diagnosis),
+            details=_details(diagnosis),
             pictures={name: picture.inline() for name, picture in pictures.items() if name != "effects"},
         )
     )
@@ -114,7 +119,7 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
         found = diagnosis.shrinkage[key]
         if found is not None and found.get("value") is not None and (key == "from_nominal" or diagnosis.selected):
             bounds = found.get("ci95")
-            detail = f"95 % interval {numbers.percent_span(bounds)}" if bounds is not None else ""
+            detail = f"95 %: {numbers.percent_span(bounds)}" if bounds is not None else ""
             facts.append((numbers.percent(found["value"]), title, detail))
     if diagnosis.explained is not None and diagnosis.selected:
         share = numbers.percent(diagnosis.explained)
@@ -125,7 +130,7 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
 def _gap_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     rows = []
     for signal, values in diagnosis.gap.items():
-        factor, unit = numbers.prefixed([values["refitted"], values["noise_floor"]], diagnosis.units.get(signal, ""))
+        factor, unit = numbers.prefixed(values.values(), diagnosis.units.get(signal, ""))
         shown = {key: numbers.number(None if value is None else factor * value) for key, value in values.items()}
         floor = values["noise_floor"]
         last = values["with_effect" if diagnosis.selected else "refitted"]
@@ -135,12 +140,22 @@ def _gap_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """Every regime with its range in words."""
+    regimes = diagnosis.where["regimes"]
     rows = []
-    for regime in diagnosis.where["regimes"]:
+    for regime in regimes:
         unit = numbers.unit_text(words.unit_of(regime["coordinate"], diagnosis.units))
         text = f"{words.words(regime['coordinate'])} {numbers.span(regime.get('range'))} {unit}".rstrip()
         rows.append({"text": text, "share": regime.get("share"), "p_value": regime.get("p_value")})
     return rows
+
+
+def _elements(diagnosis: Diagnosis) -> list[tuple[str, float | None]]:
+    """(element, probability) of those worth a row; the others are one row without a number of its own."""
+    entries = diagnosis.where["elements"]
+    rows = [(words.element_words(e["element"]), e["probability"]) for e in entries if e["probability"] >= _LEAST]
+    others = len(entries) - len(rows)
+    return rows + ([(f"{others} other element{'s' if others > 1 else ''}", None)] if others else [])
 
 
 def _where_in_words(diagnosis: Diagnosis) -> str:
@@ -154,8 +169,8 @@ def _where_in_words(diagnosis: Diagnosis) -> str:
         first = max(signals, key=lambda entry: entry["share"])
         share = numbers.percent(first["share"])
         parts.append(f"shows most in the {words.words(first['signal'])} ({share} of the excess)")
-    if regimes := _regimes(diagnosis):
-        first = max(regimes, key=lambda entry: entry["share"] or 0.0)
+    if clear := [one for one in _regimes(diagnosis) if one["p_value"] is not None and one["p_value"] <= _CLEAR]:
+        first = max(clear, key=lambda entry: entry["share"] or 0.0)
         parts.append(f"is concentrated at {first['text']} ({numbers.percent(first['share'])} of the excess)")
     return f"What tuning leaves of the gap {words.listing(parts)}." if parts else ""
 
@@ -169,6 +184,41 @@ def _runs(diagnosis: Diagnosis) -> list[dict[str, Any]]:
         entry = {"nominal": nominal, "refitted": before, "with_effect": after}
         rows.append({"name": str(name), "shrinkage": shrinkage, **entry})
     return rows
+
+
+def _fitted(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """The parameters of the last simulator: nominal, fitted and interval, each in its unit where that is known."""
+    rows = []
+    for name, of in diagnosis.details.get("parameters", {}).items():
+        bounds = list(of.get("ci95") or [])
+        shown = [of["value"], of.get("nominal"), *bounds]
+        factor, unit = numbers.prefixed(shown, str(of.get("unit") or ""))
+        value, nominal, *ends = (None if number is None else factor * number for number in shown)
+        interval = "" if None in ends or not ends else numbers.span([end for end in ends if end is not None], 4)
+        texts = {"value": numbers.number(value, 4), "nominal": numbers.number(nominal, 4), "interval": interval}
+        rows.append({"name": words.words(str(name)), "unit": unit, **texts})
+    return rows
+
+
+def _details(diagnosis: Diagnosis) -> list[tuple[str, str]]:
+    """(title, text) of what else says how it was computed; a value of a signal carries its unit."""
+    rows = []
+    for key, value in diagnosis.details.items():
+        if key == "parameters":  # a table of its own
+            continue
+        if isinstance(value, Mapping) and value and set(value) <= set(diagnosis.units):
+            text = "; ".join(
+                f"{words.words(name)} {_with_unit(of, diagnosis.units[name])}" for name, of in value.items()
+            )
+        else:
+            text = _plainly(value)
+        rows.append((words.capital(words.words(key)), text))
+    return rows
+
+
+def _with_unit(value: float, unit: str) -> str:
+    factor, shown = numbers.prefixed([value], unit)
+    return f"{numbers.number(factor * value)} {shown}".rstrip()
 
 
 def _side(diagnosis: Diagnosis) -> dict[str, Any] | None:

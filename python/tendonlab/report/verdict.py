@@ -31,15 +31,15 @@ def sentence(diagnosis: Diagnosis) -> str:
 
 
 def certainty(diagnosis: Diagnosis) -> float:
-    """The probability that the sentence quotes: of the selected set under "effect", otherwise of the verdict."""
+    """The probability that the sentence quotes: of the verdict, or of the selected set where that is less sure."""
+    of_verdict = diagnosis.verdict_probability[diagnosis.verdict]
     if diagnosis.verdict != "effect" or not diagnosis.selected:
-        return diagnosis.verdict_probability[diagnosis.verdict]
+        return of_verdict
     chosen = frozenset(diagnosis.selected)
     for candidate in diagnosis.sets:
         if frozenset(candidate["effects"]) == chosen:
-            return float(candidate["probability"])
-    marginal = [finding.probability for finding in diagnosis.effects if finding.name in chosen]
-    return min(marginal, default=diagnosis.verdict_probability["effect"])
+            return min(of_verdict, float(candidate["probability"]))
+    return min([of_verdict, *(finding.probability for finding in diagnosis.effects if finding.name in chosen)])
 
 
 def _aside(diagnosis: Diagnosis) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
+
+from tendonlab.report.numbers import number
 
 EFFECTS = {
     "coulomb": "Coulomb friction",
@@ -59,6 +62,7 @@ REPLAYS = {
 }
 _PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "bowden": "Bowden", "ar": "AR", "rms": "RMS"}
 _RATES = {"velocity": 1, "speed": 1, "acceleration": 2}
+_DECISIVE = 100.0  # nats: whatever lies beyond decides as surely
 _COORDINATES = {"time": "s", "t": "s", "frequency": "Hz", "temperature": "degC"}
 
 
@@ -99,6 +103,13 @@ def listing(items: Iterable[str], *, last: str = "and") -> str:
     """ "a", "a and b", "a, b and c"."""
     *head, tail = list(items) or [""]
     return f"{', '.join(head)} {last} {tail}" if head else tail
+
+
+def gain_words(nats: float | None) -> str:
+    """What an experiment is expected to tell, with no digit that would not matter; empty where it is not known."""
+    if nats is None or not math.isfinite(nats):
+        return ""
+    return f"expected gain {'over 100' if nats > _DECISIVE else number(nats, 2)} nats"
 
 
 def unit_of(coordinate: str, units: Mapping[str, str]) -> str:
