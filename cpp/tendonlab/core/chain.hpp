@@ -1,6 +1,6 @@
 #pragma once
-// Actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are told apart,
-// since only whoever holds the signal's past can apply them.
+// Actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are told
+// apart, since only whoever holds the signal's past can apply them.
 #include "tendonlab/core/law.hpp"
 
 namespace tendonlab {
@@ -31,9 +31,11 @@ struct Chain {
  private:
   template <class F, std::size_t... i>
   void each_index(std::index_sequence<i...>, F&& f) const {
-    ([&] {
-      if (active >> i & 1u) f(std::get<i>(laws));
-    }(), ...);
+    (
+        [&] {
+          if (active >> i & 1u) f(std::get<i>(laws));
+        }(),
+        ...);
   }
 };
 }  // namespace tendonlab

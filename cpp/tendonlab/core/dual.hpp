@@ -43,8 +43,10 @@ TENDONLAB_INLINE S lift(const T& a) {
   return S(a);
 }
 
-#define TENDONLAB_DUAL template <class T, int n> TENDONLAB_INLINE Dual<T, n>
-#define TENDONLAB_MIXED                                                                                    \
+#define TENDONLAB_DUAL      \
+  template <class T, int n> \
+  TENDONLAB_INLINE Dual<T, n>
+#define TENDONLAB_MIXED                                                                                           \
   template <class A, class T, int n, class = std::enable_if_t<std::is_same_v<A, T> || std::is_same_v<A, double>>> \
   TENDONLAB_INLINE Dual<T, n>
 template <class T, std::size_t n, class F>
@@ -88,22 +90,32 @@ TENDONLAB_MIXED operator-(const Dual<T, n>& b, const A& a) {
 TENDONLAB_MIXED operator*(const A& a, const Dual<T, n>& b) {
   return with_partials(T(a * b.value), b.d, [&](std::size_t i) { return a * b.d[i]; });
 }
-TENDONLAB_MIXED operator*(const Dual<T, n>& b, const A& a) { return a * b; }
+TENDONLAB_MIXED operator*(const Dual<T, n>& b, const A& a) {
+  return a * b;
+}
 TENDONLAB_MIXED operator/(const A& a, const Dual<T, n>& b) {
   const T i = 1.0 / b.value, v = a * i;
   return chain(v, T(-(v * i)), b);
 }
-TENDONLAB_MIXED operator/(const Dual<T, n>& b, const A& a) { return (1.0 / a) * b; }
+TENDONLAB_MIXED operator/(const Dual<T, n>& b, const A& a) {
+  return (1.0 / a) * b;
+}
 TENDONLAB_DUAL exp(const Dual<T, n>& a) {
   const T e = exp(a.value);
   return chain(e, e, a);
 }
-TENDONLAB_DUAL sin(const Dual<T, n>& a) { return chain(T(sin(a.value)), T(cos(a.value)), a); }
-TENDONLAB_DUAL cos(const Dual<T, n>& a) { return chain(T(cos(a.value)), T(-sin(a.value)), a); }
+TENDONLAB_DUAL sin(const Dual<T, n>& a) {
+  return chain(T(sin(a.value)), T(cos(a.value)), a);
+}
+TENDONLAB_DUAL cos(const Dual<T, n>& a) {
+  return chain(T(cos(a.value)), T(-sin(a.value)), a);
+}
 TENDONLAB_DUAL abs(const Dual<T, n>& a) {
   return chain(T(abs(a.value)), T(select(plain(a.value) < 0.0, -1.0, 1.0)), a);
 }
-TENDONLAB_DUAL select(bool condition, const Dual<T, n>& a, const Dual<T, n>& b) { return condition ? a : b; }
+TENDONLAB_DUAL select(bool condition, const Dual<T, n>& a, const Dual<T, n>& b) {
+  return condition ? a : b;
+}
 template <class T, int n>
 Plain<T> plain(const Dual<T, n>& a) {
   return plain(a.value);

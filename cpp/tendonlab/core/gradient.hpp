@@ -20,7 +20,9 @@ struct PlainOf<Gradient<words>> {
   using type = double;
 };
 
-#define TENDONLAB_G template <int words> TENDONLAB_INLINE Gradient<words>
+#define TENDONLAB_G    \
+  template <int words> \
+  TENDONLAB_INLINE Gradient<words>
 /// The value `v` with the derivatives that `slope(word)` gives.
 template <int words, class F>
 TENDONLAB_INLINE Gradient<words> with_slopes(const Word& v, F slope) {
@@ -48,7 +50,9 @@ TENDONLAB_G operator/(const Gradient<words>& a, const Gradient<words>& b) {  // 
 TENDONLAB_G operator+(double a, const Gradient<words>& b) {
   return with_slopes<words>(a + b.value, [&](int i) { return b.d[i]; });
 }
-TENDONLAB_G operator+(const Gradient<words>& a, double b) { return b + a; }
+TENDONLAB_G operator+(const Gradient<words>& a, double b) {
+  return b + a;
+}
 TENDONLAB_G operator-(double a, const Gradient<words>& b) {
   return with_slopes<words>(a - b.value, [&](int i) { return -b.d[i]; });
 }
@@ -58,12 +62,16 @@ TENDONLAB_G operator-(const Gradient<words>& a, double b) {
 TENDONLAB_G operator*(double a, const Gradient<words>& b) {
   return with_slopes<words>(a * b.value, [&](int i) { return a * b.d[i]; });
 }
-TENDONLAB_G operator*(const Gradient<words>& a, double b) { return b * a; }
+TENDONLAB_G operator*(const Gradient<words>& a, double b) {
+  return b * a;
+}
 TENDONLAB_G operator/(double a, const Gradient<words>& b) {
   const Word i = 1.0 / b.value, v = a * i, s = -(v * i);
   return with_slopes<words>(v, [&](int k) { return s * b.d[k]; });
 }
-TENDONLAB_G operator/(const Gradient<words>& a, double b) { return (1.0 / b) * a; }
+TENDONLAB_G operator/(const Gradient<words>& a, double b) {
+  return (1.0 / b) * a;
+}
 TENDONLAB_G exp(const Gradient<words>& a) {
   const Word e = Word{} + exp(a.value[0]);
   return with_slopes<words>(e, [&](int i) { return e * a.d[i]; });
@@ -76,8 +84,12 @@ TENDONLAB_G cos(const Gradient<words>& a) {
   const double s = -sin(a.value[0]);
   return with_slopes<words>(Word{} + cos(a.value[0]), [&](int i) { return s * a.d[i]; });
 }
-TENDONLAB_G abs(const Gradient<words>& a) { return a.value[0] < 0.0 ? -a : a; }
-TENDONLAB_G select(bool condition, const Gradient<words>& a, const Gradient<words>& b) { return condition ? a : b; }
+TENDONLAB_G abs(const Gradient<words>& a) {
+  return a.value[0] < 0.0 ? -a : a;
+}
+TENDONLAB_G select(bool condition, const Gradient<words>& a, const Gradient<words>& b) {
+  return condition ? a : b;
+}
 template <int words>
 double plain(const Gradient<words>& a) {
   return a.value[0];

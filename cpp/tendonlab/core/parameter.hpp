@@ -11,7 +11,17 @@ inline constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// Effort and flow are N·m and rad/s on a rotary axis, N and m/s on a linear one; the rest follows from them.
 enum class Dimension {
-  effort, flow, displacement, inertia, damping, stiffness, ratio, time, command, effort_per_command, output
+  effort,
+  flow,
+  displacement,
+  inertia,
+  damping,
+  stiffness,
+  ratio,
+  time,
+  command,
+  effort_per_command,
+  output
 };
 enum class Purpose {
   structure,  ///< of the system itself
@@ -24,7 +34,7 @@ enum class Purpose {
 /// ratio or a time: it starts fits and sets the width of priors.
 template <class Owner, class Field>
 struct Parameter {
-  Field Owner::* field;
+  Field Owner::*field;
   std::string_view name;
   Dimension dimension;
   Purpose purpose;
@@ -32,7 +42,7 @@ struct Parameter {
   std::string_view meaning;
 };
 template <class Owner, class Field>
-constexpr Parameter<Owner, Field> parameter(Field Owner::* field, std::string_view name, Dimension dimension,
+constexpr Parameter<Owner, Field> parameter(Field Owner::*field, std::string_view name, Dimension dimension,
                                             Purpose purpose, double typical, double lower, double upper,
                                             std::string_view meaning) {
   return {field, name, dimension, purpose, typical, lower, upper, meaning};

@@ -24,13 +24,22 @@ S square(const S& a) {
   return a * a;
 }
 
-inline double plain(double a) { return a; }
+inline double plain(double a) {
+  return a;
+}
 /// Does anything that is differentiated move this?
-inline bool varies(double) { return false; }
-inline double select(bool condition, double a, double b) { return condition ? a : b; }
-inline double abs(double a) { return std::fabs(a); }
+inline bool varies(double) {
+  return false;
+}
+inline double select(bool condition, double a, double b) {
+  return condition ? a : b;
+}
+inline double abs(double a) {
+  return std::fabs(a);
+}
 
-/// exp(x), 1e-15 relative in [-90, 700], flat below: inline, so that laws cost what the arithmetic costs (Estrin's scheme).
+/// exp(x), 1e-15 relative in [-90, 700], flat below: inline, so that laws cost what the arithmetic costs (Estrin's
+/// scheme).
 TENDONLAB_INLINE double exp(double x) {
   constexpr double magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
   x = x > -90.0 ? x : -90.0;
@@ -65,8 +74,12 @@ TENDONLAB_INLINE double turn_sine(double turns) {
   return x + x * s * p;
 }
 inline constexpr double inverse_turn = 0.15915494309189535;
-TENDONLAB_INLINE double sin(double x) { return turn_sine(x * inverse_turn); }
-TENDONLAB_INLINE double cos(double x) { return turn_sine(x * inverse_turn + 0.25); }
+TENDONLAB_INLINE double sin(double x) {
+  return turn_sine(x * inverse_turn);
+}
+TENDONLAB_INLINE double cos(double x) {
+  return turn_sine(x * inverse_turn + 0.25);
+}
 
 /// A parameter that laws divide by: keeps its reciprocal, so that `velocity / stribeck_velocity` costs a product.
 template <class T>

@@ -22,11 +22,12 @@ struct Slot {
   }
   template <unsigned wanted, class F>
   void each(F&& f) const {
-    each_index(std::make_index_sequence<size>{}, [&](auto i) __attribute__((always_inline)) {
-      using Law = std::tuple_element_t<i, Laws>;
-      if constexpr ((Law::roles & wanted) != 0)
-        if (active >> i & 1u) f(std::get<i>(laws));
-    });
+    each_index(
+        std::make_index_sequence<size>{}, [&](auto i) __attribute__((always_inline)) {
+          using Law = std::tuple_element_t<i, Laws>;
+          if constexpr ((Law::roles & wanted) != 0)
+            if (active >> i & 1u) f(std::get<i>(laws));
+        });
   }
   template <unsigned wanted>
   static constexpr int count() {

@@ -12,16 +12,17 @@ template <class T>
 struct Asymmetry {
   static constexpr std::string_view name = "asymmetry", source = "EMPS benchmark, second model",
                                     equation = "g (1 + a sgn(v)) sgn(v) + b |v|",
-                                    summary = "direction-dependent friction: level and viscous friction differ by direction";
+                                    summary =
+                                        "direction-dependent friction: level and viscous friction differ by direction";
   static constexpr unsigned roles = role::factor | role::force, sees = sees_velocity;
   T level_asymmetry, viscous_asymmetry;
 
   static constexpr auto parameters() {
-    return std::tuple{parameter(&Asymmetry::level_asymmetry, "level_asymmetry", Dimension::ratio, Purpose::amplitude,
-                                0.1, -1.0, 1.0, "share by which the dry level is larger forwards"),
-                      parameter(&Asymmetry::viscous_asymmetry, "viscous_asymmetry", Dimension::damping,
-                                Purpose::amplitude, 0.03, -inf, inf,
-                                "half the difference of viscous friction, forwards minus backwards")};
+    return std::tuple{
+        parameter(&Asymmetry::level_asymmetry, "level_asymmetry", Dimension::ratio, Purpose::amplitude, 0.1, -1.0, 1.0,
+                  "share by which the dry level is larger forwards"),
+        parameter(&Asymmetry::viscous_asymmetry, "viscous_asymmetry", Dimension::damping, Purpose::amplitude, 0.03,
+                  -inf, inf, "half the difference of viscous friction, forwards minus backwards")};
   }
   template <class S>
   S factor(const Sliding<S>& at) const {

@@ -11,7 +11,8 @@ namespace tendonlab::friction {
 template <class T>
 struct LoadDependence {
   static constexpr std::string_view name = "load_dependence", source = "S1 eq. 6", equation = "c |F_load| sgn(v)",
-                                    summary = "load-dependent friction: dry friction in proportion to the effort carried";
+                                    summary =
+                                        "load-dependent friction: dry friction in proportion to the effort carried";
   static constexpr unsigned roles = role::level, sees = sees_load;
   T load_dependence;
 

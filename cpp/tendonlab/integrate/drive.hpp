@@ -16,8 +16,12 @@ class Drive {
   static constexpr int max_inputs = 4;
 
   Drive(const Experiment& experiment, const T& command_delay, const T& sensor_delay, const T& sensor_bias)
-      : from(experiment), late(command_delay), sensor_late(sensor_delay), bias(sensor_bias),
-        shift(plain(command_delay)), remembers(needs_past()) {
+      : from(experiment),
+        late(command_delay),
+        sensor_late(sensor_delay),
+        bias(sensor_bias),
+        shift(plain(command_delay)),
+        remembers(needs_past()) {
     pass_known(experiment.time.front());
     pass_command(experiment.time.front());
   }
@@ -110,8 +114,8 @@ class Drive {
     const T r = loop.reference.value(T(now), unshifted);
     const bool first = tick == 0;
     if (first) last_reading = y, last_reference = r;
-    T u = loop.proportional * (r - y) + (loop.derivative / loop.sample_time) *
-                                            (loop.reference_weight * (r - last_reference) - (y - last_reading));
+    T u = loop.proportional * (r - y) +
+          (loop.derivative / loop.sample_time) * (loop.reference_weight * (r - last_reference) - (y - last_reading));
     if (plain(u) > loop.limit) u = T(loop.limit);
     if (plain(u) < -loop.limit) u = T(-loop.limit);
     last_reading = y, last_reference = r;
@@ -143,9 +147,7 @@ class Drive {
   /// How far back the loop reads, s.
   double lateness() const { return shift + plain(sensor_late); }
   /// Longest step over which a delayed reading is known in advance.
-  double longest_step() const {
-    return remembers && lateness() > Past<T>::shortest ? lateness() : Signal::inf_time;
-  }
+  double longest_step() const { return remembers && lateness() > Past<T>::shortest ? lateness() : Signal::inf_time; }
 
   const Experiment& from;
   const T late, sensor_late, bias;

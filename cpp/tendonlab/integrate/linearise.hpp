@@ -31,7 +31,7 @@ struct SlotBlocks {
     s.side = port.side;
     const D* source[outer];
     int k = 0;
-    const auto seed = [&](L& x, const D& from, bool is_seen) __attribute__((always_inline)) {
+    const auto seed = [&](L & x, const D& from, bool is_seen) __attribute__((always_inline)) {
       if (!is_seen) return;
       x = variable<L>(from.value, k);
       source[k++] = &from;

@@ -21,7 +21,9 @@ class Past {
   template <class Y>
   void add(const Step<Y>& s, double start, double h, double taken, int axis, double keep) {
     const auto j = static_cast<std::size_t>(axis);
-    const auto part = [&](const auto& of) { return Curve{of(s.from.at), of(s.to.at), of(s.first.at), of(s.second.at)}; };
+    const auto part = [&](const auto& of) {
+      return Curve{of(s.from.at), of(s.to.at), of(s.first.at), of(s.second.at)};
+    };
     pieces.push_back({start, start + taken, h, segment_written, part([&](const auto& at) { return at.position[j]; }),
                       part([&](const auto& at) { return at.velocity[j]; })});
     while (pieces.size() > 1 && pieces.front().end < start - 2 * keep) pieces.pop_front();
@@ -47,7 +49,8 @@ class Past {
     if (segment_read < 0 || plain(then) <= beginning || pieces.empty())
       return {lift<S>(first_position), lift<S>(first_velocity)};
     auto p = pieces.rbegin();  // never a piece beyond the kink that the stepper landed on
-    while (p + 1 != pieces.rend() && (p->segment > segment_read || (p->start > plain(then) && (p + 1)->segment == p->segment)))
+    while (p + 1 != pieces.rend() &&
+           (p->segment > segment_read || (p->start > plain(then) && (p + 1)->segment == p->segment)))
       ++p;
     const S s = (then - p->start) * (1.0 / p->h);
     return {p->position.template at<S>(s), p->velocity.template at<S>(s)};

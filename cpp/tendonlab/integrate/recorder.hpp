@@ -13,8 +13,15 @@ class Recorder {
  public:
   /// `column`: the first column of the trajectory's gradient that this run fills, `width` of them.
   Recorder(const System& of, const Experiment& with, Trajectory& into, int first_column, int columns, bool with_ports)
-      : system(of), contact(of), time(with.time), out(into), column(first_column), width(columns), records_ports(with_ports) {
-    for (std::size_t c = 0; c < channels; ++c) delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
+      : system(of),
+        contact(of),
+        time(with.time),
+        out(into),
+        column(first_column),
+        width(columns),
+        records_ports(with_ports) {
+    for (std::size_t c = 0; c < channels; ++c)
+      delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
   template <class Inputs>
   void operator()(const Step<Y>& s, double start, double length, double taken, const Frame<System, T>& frame,
@@ -73,7 +80,8 @@ class Recorder {
     out.value[channel * time.size() + sample] = plain(value);
     if constexpr (!std::is_same_v<T, double>)
       for (int k = 0; k < width; ++k)
-        out.gradient[(static_cast<std::size_t>(column + k) * channels + channel) * time.size() + sample] = value.derivative(k);
+        out.gradient[(static_cast<std::size_t>(column + k) * channels + channel) * time.size() + sample] =
+            value.derivative(k);
   }
   /// Velocity, position, load and force of each port; a sticking port's friction is what holds it, borne by the first
   /// slot of its mode.
@@ -88,7 +96,8 @@ class Recorder {
       if constexpr (m >= 0)
         if (contact.bearer(m) == i) effort += push[m];
       const double row[4] = {plain(port.velocity), plain(port.position), plain(port.load), effort};
-      for (std::size_t k = 0; k < 4; ++k) out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + sample] = row[k];
+      for (std::size_t k = 0; k < 4; ++k)
+        out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + sample] = row[k];
     });
   }
 

@@ -76,12 +76,13 @@ template <class Tableau, class System, class T, class Inputs>
     k[i] = stage<Tableau, i, System, T>(system, y, frame, in, h, blocks, solver, k);
   });
   Step<Y> s{y, y, {}, {}, k[Tableau::stages - 1]};
-  unroll<Tableau::stages>([&](auto j) __attribute__((always_inline)) {  // stiffly accurate: the last row of A, then the error
-    constexpr double b = j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0;
-    add(s.to, b, k[j]);
-    if constexpr (Tableau::D[0][j] != 0) add(s.first, Tableau::D[0][j], k[j]);
-    if constexpr (Tableau::D[1][j] != 0) add(s.second, Tableau::D[1][j], k[j]);
-  });
+  unroll<Tableau::stages>([&](auto j)
+                              __attribute__((always_inline)) {  // stiffly accurate: the last row of A, then the error
+                                constexpr double b = j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0;
+                                add(s.to, b, k[j]);
+                                if constexpr (Tableau::D[0][j] != 0) add(s.first, Tableau::D[0][j], k[j]);
+                                if constexpr (Tableau::D[1][j] != 0) add(s.second, Tableau::D[1][j], k[j]);
+                              });
   s.to.at.time = y.at.time + h;
   return s;
 }

@@ -1,16 +1,16 @@
 #pragma once
 namespace tendonlab::integrate {
-/// Rodas4 (Hairer and Wanner): order 4, stiffly accurate, cubic dense output. k_i = stage increments, error = last of them.
+/// Rodas4 (Hairer and Wanner): order 4, stiffly accurate, cubic dense output. k_i = stage increments, error = last of
+/// them.
 struct Rodas4 {
   static constexpr int stages = 6;
   static constexpr double gamma = 0.25;
-  static constexpr double A[6][6] = {
-      {0},
-      {1.544},
-      {0.9466785280815826, 0.2557011698983284},
-      {3.314825187068521, 2.896124015972201, 0.9986419139977817},
-      {1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895},
-      {1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895, 1}};
+  static constexpr double A[6][6] = {{0},
+                                     {1.544},
+                                     {0.9466785280815826, 0.2557011698983284},
+                                     {3.314825187068521, 2.896124015972201, 0.9986419139977817},
+                                     {1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895},
+                                     {1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895, 1}};
   static constexpr double C[6][6] = {
       {0},
       {-5.6688},

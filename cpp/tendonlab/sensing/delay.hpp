@@ -15,8 +15,8 @@ struct Delay {
   T late;
 
   static constexpr auto parameters() {
-    return std::tuple{parameter(&Delay::late, "delay", Dimension::time, Purpose::amplitude, 0.005, 0.0, inf,
-                                "age of the reading")};
+    return std::tuple{
+        parameter(&Delay::late, "delay", Dimension::time, Purpose::amplitude, 0.005, 0.0, inf, "age of the reading")};
   }
   T lateness() const { return late; }
   template <class S>

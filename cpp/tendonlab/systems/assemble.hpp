@@ -10,7 +10,8 @@ namespace tendonlab::systems {
 template <class System, class F>
 void for_each_place(System& system, F&& f) {
   std::size_t i = 0;
-  std::apply([&](auto&... slot) { (f(std::string(System::ports[i++].element), slot.laws, slot.active), ...); }, system.slot);
+  std::apply([&](auto&... slot) { (f(std::string(System::ports[i++].element), slot.laws, slot.active), ...); },
+             system.slot);
   f(std::string("actuation"), system.actuation.laws, system.actuation.active);
   for (std::size_t c = 0; c < System::outputs.size(); ++c)
     f("sensor." + std::string(System::outputs[c].name), system.sensor[c].laws, system.sensor[c].active);

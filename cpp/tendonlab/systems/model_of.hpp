@@ -16,7 +16,8 @@ SystemInfo describe() {
     info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis});
   for (const auto& port : System::ports) info.ports.emplace_back(port.element);
   for (const auto& name : System::nominal) info.nominal.emplace_back(name);
-  systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) { info.elements.push_back(element); });
+  systems::for_each_place(system,
+                          [&](const std::string& element, auto&, unsigned) { info.elements.push_back(element); });
   systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
     info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
                                std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
@@ -25,8 +26,15 @@ SystemInfo describe() {
   systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;
     const std::string name = element + ":" + std::string(Law::name);
-    EffectInfo effect{name, element, std::string(Law::name), std::string(Law::equation), std::string(Law::source),
-                      std::string(Law::summary), {}, Law::roles, systems::is_structural<System>(name)};
+    EffectInfo effect{name,
+                      element,
+                      std::string(Law::name),
+                      std::string(Law::equation),
+                      std::string(Law::source),
+                      std::string(Law::summary),
+                      {},
+                      Law::roles,
+                      systems::is_structural<System>(name)};
     for_each_parameter<Law>([&](const auto& p) {
       effect.parameters.push_back(systems::parameter_name<System>(element, Law::name, p.name));
     });
@@ -37,14 +45,16 @@ SystemInfo describe() {
 
 /// The system with numbers in it; `columns` are seeded into the derivatives of `T`.
 template <class System, class T>
-System assemble(const Configuration& with, const std::vector<integrate::Seed>& seeds, std::size_t first, std::size_t count) {
+System assemble(const Configuration& with, const std::vector<integrate::Seed>& seeds, std::size_t first,
+                std::size_t count) {
   System system{};
   std::size_t index = 0;
   systems::for_each_parameter_of(system, [&](const std::string&, std::string_view, const auto&, auto& field) {
     T value(with.values[index]);
     if constexpr (!std::is_same_v<T, double>)
       for (std::size_t k = 0; k < count; ++k)
-        if (seeds[first + k].of == integrate::Seed::Of::parameter && static_cast<std::size_t>(seeds[first + k].index) == index)
+        if (seeds[first + k].of == integrate::Seed::Of::parameter &&
+            static_cast<std::size_t>(seeds[first + k].index) == index)
           value.seed(static_cast<int>(k), 1.0);
     field = value;
     ++index;
@@ -102,18 +112,21 @@ class ModelOf final : public Model {
         throw ParameterError(sentence(of, " ", static_cast<long>(value), ": ", System::name, " has ", count));
     };
     if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != System::dof)
-      throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ", experiment.position.size(),
-                                    " positions: ", System::name, " expects ", System::inputs.size(), " and ", System::dof));
+      throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ",
+                                    experiment.position.size(), " positions: ", System::name, " expects ",
+                                    System::inputs.size(), " and ", System::dof));
     index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
             static_cast<std::size_t>(seed.index),
-            seed.of == integrate::Seed::Of::parameter ? description.parameters.size() : static_cast<std::size_t>(System::dof));
+            seed.of == integrate::Seed::Of::parameter ? description.parameters.size()
+                                                      : static_cast<std::size_t>(System::dof));
   }
   template <class T>
   static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
-                  std::size_t first, std::size_t count, const integrate::Settings& settings, integrate::Trajectory& out) {
+                  std::size_t first, std::size_t count, const integrate::Settings& settings,
+                  integrate::Trajectory& out) {
     using System = Of<T>;
     const System system = assemble<System, T>(with, seeds, first, count);
     const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
@@ -128,7 +141,8 @@ class ModelOf final : public Model {
       for (std::size_t k = 0; k < count; ++k) {
         const auto& seed = seeds[first + k];
         auto& of = seed.of == integrate::Seed::Of::position ? simulation.y.at.position : simulation.y.at.velocity;
-        if (seed.of != integrate::Seed::Of::parameter) of[static_cast<std::size_t>(seed.index)].seed(static_cast<int>(k), 1.0);
+        if (seed.of != integrate::Seed::Of::parameter)
+          of[static_cast<std::size_t>(seed.index)].seed(static_cast<int>(k), 1.0);
       }
     simulation.run(out, integrate::Recorder<System, T>(system, experiment, out, static_cast<int>(first),
                                                        static_cast<int>(count), settings.ports && first == 0));

@@ -13,9 +13,8 @@ struct RigidJoint {
   static constexpr std::array<Input, 2> inputs{
       {{"motor_torque", "command to the actuator", Dimension::command, true},
        {"known_torque", "effort known to act on the joint", Dimension::effort, false}}};
-  static constexpr std::array<Output, 2> outputs{
-      {{"joint_angle", "position of the joint", Dimension::displacement, 0},
-       {"joint_velocity", "velocity of the joint", Dimension::flow, -1}}};
+  static constexpr std::array<Output, 2> outputs{{{"joint_angle", "position of the joint", Dimension::displacement, 0},
+                                                  {"joint_velocity", "velocity of the joint", Dimension::flow, -1}}};
   static constexpr std::array<std::string_view, 0> structural{};
   static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
   static constexpr bool plain_names = true;  ///< parameters of the nominal effects carry no element in front
@@ -28,12 +27,13 @@ struct RigidJoint {
   T lever[1][dof];
 
   static constexpr auto parameters() {
-    return std::tuple{parameter(&RigidJoint::inertia, "inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12,
-                                inf, "inertia of everything that moves"),
-                      parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
-                                0.0, -inf, inf, "gravity torque at 90 degrees"),
-                      parameter(&RigidJoint::torque_constant, "torque_constant", Dimension::effort_per_command,
-                                Purpose::structure, 1.0, -inf, inf, "effort per unit of the command; known unless sd says otherwise")};
+    return std::tuple{
+        parameter(&RigidJoint::inertia, "inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12, inf,
+                  "inertia of everything that moves"),
+        parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure, 0.0, -inf, inf,
+                  "gravity torque at 90 degrees"),
+        parameter(&RigidJoint::torque_constant, "torque_constant", Dimension::effort_per_command, Purpose::structure,
+                  1.0, -inf, inf, "effort per unit of the command; known unless sd says otherwise")};
   }
   void prepare() {
     inverse_inertia[0] = 1.0 / inertia;

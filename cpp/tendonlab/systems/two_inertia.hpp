@@ -8,8 +8,9 @@ namespace tendonlab::systems {
 template <class T>
 struct TwoInertia {
   static constexpr std::string_view name = "two_inertia",
-                                    equation = "J_m q_m'' = u - friction_m - f/N; J_l q_l'' = f - friction_l - g_tau "
-                                               "sin(q_l) + known_torque; f = k (q_m/N - q_l) + c (q_m'/N - q_l')";
+                                    equation =
+                                        "J_m q_m'' = u - friction_m - f/N; J_l q_l'' = f - friction_l - g_tau "
+                                        "sin(q_l) + known_torque; f = k (q_m/N - q_l) + c (q_m'/N - q_l')";
   static constexpr int dof = 2, directions = 2, sides = 1;
   enum PortOf { motor, joint, contact, cable };
   static constexpr std::array<Port, 4> ports{{{"motor", 0}, {"joint", 1}, {"contact", 1}, {"cable", -1, 2}}};
@@ -17,10 +18,10 @@ struct TwoInertia {
   static constexpr std::array<Input, 2> inputs{
       {{"motor_torque", "torque of the motor", Dimension::command, true},
        {"known_torque", "effort known to act on the joint", Dimension::effort, false}}};
-  static constexpr std::array<Output, 3> outputs{{{"motor_angle", "angle of the motor", Dimension::displacement, 0},
-                                                  {"joint_angle", "angle of the joint", Dimension::displacement, 1},
-                                                  {"cable_torque", "torque of the cable on the joint",
-                                                   Dimension::effort, -1}}};
+  static constexpr std::array<Output, 3> outputs{
+      {{"motor_angle", "angle of the motor", Dimension::displacement, 0},
+       {"joint_angle", "angle of the joint", Dimension::displacement, 1},
+       {"cable_torque", "torque of the cable on the joint", Dimension::effort, -1}}};
   static constexpr std::array<std::string_view, 1> structural{"cable:compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:coulomb", "motor:viscous", "joint:coulomb",
                                                            "joint:viscous"};
@@ -35,15 +36,14 @@ struct TwoInertia {
   T lever[4][dof];
 
   static constexpr auto parameters() {
-    return std::tuple{
-        parameter(&TwoInertia::motor_inertia, "motor_inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12, inf,
-                  "inertia of the motor"),
-        parameter(&TwoInertia::joint_inertia, "joint_inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12, inf,
-                  "inertia of the joint with its load"),
-        parameter(&TwoInertia::gear_ratio, "gear_ratio", Dimension::ratio, Purpose::structure, 1.0, 1e-9, inf,
-                  "turns of the motor per turn of the joint"),
-        parameter(&TwoInertia::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure, 0.0, -inf, inf,
-                  "gravity torque at 90 degrees")};
+    return std::tuple{parameter(&TwoInertia::motor_inertia, "motor_inertia", Dimension::inertia, Purpose::structure,
+                                1.0, 1e-12, inf, "inertia of the motor"),
+                      parameter(&TwoInertia::joint_inertia, "joint_inertia", Dimension::inertia, Purpose::structure,
+                                1.0, 1e-12, inf, "inertia of the joint with its load"),
+                      parameter(&TwoInertia::gear_ratio, "gear_ratio", Dimension::ratio, Purpose::structure, 1.0, 1e-9,
+                                inf, "turns of the motor per turn of the joint"),
+                      parameter(&TwoInertia::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
+                                0.0, -inf, inf, "gravity torque at 90 degrees")};
   }
   void prepare() {
     inverse_inertia = {1.0 / motor_inertia, 1.0 / joint_inertia};
