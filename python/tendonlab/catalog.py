@@ -10,17 +10,8 @@ from typing import TypeVar
 from tendonlab import _core
 from tendonlab.errors import ParameterError
 
-UNITS = {
-    "rotary": {
-        "effort": "N*m", "flow": "rad/s", "displacement": "rad", "inertia": "kg*m^2", "damping": "N*m*s/rad",
-        "stiffness": "N*m/rad", "effort_per_command": "N*m",
-    },
-    "linear": {
-        "effort": "N", "flow": "m/s", "displacement": "m", "inertia": "kg", "damping": "N*s/m",
-        "stiffness": "N/m", "effort_per_command": "N",
-    },
-}  # fmt: skip
-PLAIN_UNITS = {"ratio": "1", "time": "s"}
+AXES = ("rotary", "linear")
+UNITS = _core.units()
 
 
 @dataclass(frozen=True)
@@ -129,14 +120,11 @@ def system_info(kind: str) -> SystemInfo:
 
 def unit(dimension: str, axis: str) -> str:
     """Unit of a dimension on a "rotary" or "linear" axis, e.g. unit("effort", "linear") = "N"."""
-    if axis not in UNITS:
-        raise ParameterError(f"axis = {axis!r}: expected one of {', '.join(UNITS)}")
-    if dimension == "command":
-        dimension = "effort"
-    found = PLAIN_UNITS.get(dimension) or UNITS[axis].get(dimension)
-    if found is None:
-        raise ParameterError(f"dimension = {dimension!r}: expected one of {', '.join([*UNITS[axis], *PLAIN_UNITS])}")
-    return found
+    if axis not in AXES:
+        raise ParameterError(f"axis = {axis!r}: expected one of {', '.join(AXES)}")
+    if dimension not in UNITS:
+        raise ParameterError(f"dimension = {dimension!r}: expected one of {', '.join(UNITS)}")
+    return UNITS[dimension][AXES.index(axis)]
 
 
 def parameter_unit(info: SystemInfo, parameter: Parameter, axis: str) -> str:

@@ -13,5 +13,4 @@ void bind_identify(py::module_& module);
 
 /// The numbers of `values` as a numpy array of the given shape, without a copy.
 Array to_array(std::vector<double> values, std::vector<py::ssize_t> shape);
-std::string dimension_name(int dimension);
 }  // namespace tendonlab::bindings

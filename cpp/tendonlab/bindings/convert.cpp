@@ -6,7 +6,8 @@ namespace tendonlab::bindings {
 Configuration make_configuration(const Model& of, const std::vector<double>& values, const std::vector<bool>& active) {
   const SystemInfo& info = of.info();
   if (values.size() != info.parameters.size())
-    throw ParameterError(sentence(values.size(), " values: ", info.kind, " has ", info.parameters.size(), " parameters"));
+    throw ParameterError(
+        sentence(values.size(), " values: ", info.kind, " has ", info.parameters.size(), " parameters"));
   if (active.size() != info.effects.size())
     throw ParameterError(sentence(active.size(), " flags: ", info.kind, " has ", info.effects.size(), " effects"));
   for (std::size_t i = 0; i < values.size(); ++i) {

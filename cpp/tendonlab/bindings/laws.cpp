@@ -4,6 +4,7 @@
 
 #include "tendonlab/actuation/all.hpp"
 #include "tendonlab/bindings/bind.hpp"
+#include "tendonlab/bindings/words.hpp"
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/friction/all.hpp"
 #include "tendonlab/sensing/all.hpp"
@@ -11,24 +12,8 @@
 
 namespace tendonlab::bindings {
 namespace {
-struct Units {
-  const char *dimension, *rotary, *linear;
-};
-constexpr Units units[] = {{"effort", "N*m", "N"},
-                           {"flow", "rad/s", "m/s"},
-                           {"displacement", "rad", "m"},
-                           {"inertia", "kg*m^2", "kg"},
-                           {"damping", "N*m*s/rad", "N*s/m"},
-                           {"stiffness", "N*m/rad", "N/m"},
-                           {"ratio", "1", "1"},
-                           {"time", "s", "s"},
-                           {"command", "unit of the command", "unit of the command"},
-                           {"effort_per_command", "N*m per unit of the command", "N per unit of the command"},
-                           {"output", "unit of its signal", "unit of its signal"}};
-constexpr const char* purposes[] = {"structure", "amplitude", "share", "shape"};
-
 std::string both_units(Dimension dimension) {
-  const Units& u = units[static_cast<int>(dimension)];
+  const DimensionWords& u = words(dimension);
   return u.rotary == std::string_view(u.linear) ? u.rotary : sentence(u.rotary, " or ", u.linear);
 }
 
@@ -226,10 +211,9 @@ py::tuple table() {
   const py::object read_only = py::module_::import("types").attr("MappingProxyType");
   py::list rows;
   for_each_parameter<L>([&](const auto& p) {
-    rows.append(read_only(
-        py::dict(arg("name") = std::string(p.name), arg("dimension") = units[static_cast<int>(p.dimension)].dimension,
-                 arg("purpose") = purposes[static_cast<int>(p.purpose)], arg("typical") = p.typical,
-                 arg("lower") = p.lower, arg("upper") = p.upper, arg("meaning") = std::string(p.meaning))));
+    rows.append(read_only(py::dict(arg("name") = std::string(p.name), arg("dimension") = words(p.dimension).name,
+                                   arg("purpose") = word(p.purpose), arg("typical") = p.typical, arg("lower") = p.lower,
+                                   arg("upper") = p.upper, arg("meaning") = std::string(p.meaning))));
   });
   return py::tuple(rows);
 }
@@ -288,6 +272,14 @@ void bind_laws(py::module_& module) {
   bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
   bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
+  module.def(
+      "units",
+      [] {
+        py::dict all;
+        for (const DimensionWords& of : dimension_words) all[of.name] = py::make_tuple(of.rotary, of.linear);
+        return all;
+      },
+      "Unit of each dimension on a rotary and on a linear axis.");
   module.def(
       "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");
 }

@@ -1,4 +1,5 @@
 #include "tendonlab/bindings/convert.hpp"
+#include "tendonlab/bindings/words.hpp"
 #include "tendonlab/core/error.hpp"
 
 namespace tendonlab::bindings {
@@ -7,20 +8,16 @@ using integrate::Experiment;
 using integrate::Loop;
 using integrate::Signal;
 
-constexpr const char* dimension_names[] = {"effort", "flow", "displacement", "inertia", "damping", "stiffness", "ratio",
-                                           "time", "command", "effort_per_command", "output"};
-constexpr const char* purpose_names[] = {"structure", "amplitude", "share", "shape"};
-
 py::dict signal_info(const SignalInfo& s) {
   return py::dict(py::arg("name") = s.name, py::arg("meaning") = s.meaning,
-                  py::arg("dimension") = dimension_names[static_cast<int>(s.dimension)],
-                  py::arg("required") = s.required, py::arg("axis") = s.axis);
+                  py::arg("dimension") = words(s.dimension).name, py::arg("required") = s.required,
+                  py::arg("axis") = s.axis);
 }
 py::dict parameter_info(const ParameterInfo& p) {
   return py::dict(py::arg("name") = p.name, py::arg("element") = p.element, py::arg("effect") = p.effect,
-                  py::arg("own") = p.own, py::arg("dimension") = dimension_names[static_cast<int>(p.dimension)],
-                  py::arg("purpose") = purpose_names[static_cast<int>(p.purpose)], py::arg("typical") = p.typical,
-                  py::arg("lower") = p.lower, py::arg("upper") = p.upper, py::arg("meaning") = p.meaning);
+                  py::arg("own") = p.own, py::arg("dimension") = words(p.dimension).name,
+                  py::arg("purpose") = word(p.purpose), py::arg("typical") = p.typical, py::arg("lower") = p.lower,
+                  py::arg("upper") = p.upper, py::arg("meaning") = p.meaning);
 }
 py::dict effect_info(const EffectInfo& e) {
   return py::dict(py::arg("name") = e.name, py::arg("element") = e.element, py::arg("effect") = e.effect,
@@ -36,16 +33,17 @@ py::list listed(const Items& items, F make) {
 }
 py::dict system_info(const std::string& kind) {
   const SystemInfo& s = model(kind).info();
-  return py::dict(py::arg("kind") = s.kind, py::arg("equation") = s.equation, py::arg("dof") = s.dof,
-                  py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
-                  py::arg("parameters") = listed(s.parameters, parameter_info),
-                  py::arg("effects") = listed(s.effects, effect_info), py::arg("elements") = s.elements,
-                  py::arg("ports") = s.ports, py::arg("nominal") = s.nominal);
+  return py::dict(
+      py::arg("kind") = s.kind, py::arg("equation") = s.equation, py::arg("dof") = s.dof,
+      py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
+      py::arg("parameters") = listed(s.parameters, parameter_info), py::arg("effects") = listed(s.effects, effect_info),
+      py::arg("elements") = s.elements, py::arg("ports") = s.ports, py::arg("nominal") = s.nominal);
 }
 
 Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
   const auto pieces = static_cast<std::size_t>(knots.size());
-  if (coefficients.ndim() != 2 || coefficients.shape(1) != 4 || static_cast<std::size_t>(coefficients.shape(0)) != pieces)
+  if (coefficients.ndim() != 2 || coefficients.shape(1) != 4 ||
+      static_cast<std::size_t>(coefficients.shape(0)) != pieces)
     throw ParameterError(sentence("signal with ", pieces, " knots: expected coefficients of shape (", pieces, ", 4)"));
   Signal s;
   s.holds = holds;
@@ -72,8 +70,8 @@ Loop make_loop(const std::string& kind, int axis, int output, double proportiona
   return loop;
 }
 
-Experiment make_experiment(const std::string& kind, std::vector<double> time, std::vector<Signal> inputs, const Loop& loop,
-                           std::vector<double> position, std::vector<double> velocity) {
+Experiment make_experiment(const std::string& kind, std::vector<double> time, std::vector<Signal> inputs,
+                           const Loop& loop, std::vector<double> position, std::vector<double> velocity) {
   const SystemInfo& info = model(kind).info();
   const auto dof = static_cast<std::size_t>(info.dof);
   if (time.size() < 2) throw ParameterError(sentence("experiment with ", time.size(), " samples: expected at least 2"));
@@ -109,19 +107,26 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
 }  // namespace
 
 void bind_systems(py::module_& module) {
-  module.def("kinds", [] {
-    std::vector<std::string> names;
-    for (const auto& m : models()) names.push_back(m->info().kind);
-    return names;
-  }, "Names of all systems.");
+  module.def(
+      "kinds",
+      [] {
+        std::vector<std::string> names;
+        for (const auto& m : models()) names.push_back(m->info().kind);
+        return names;
+      },
+      "Names of all systems.");
   module.def("system_info", &system_info, py::arg("kind"), "Everything a system states about itself, as plain types.");
-  module.def("rigid_motion", [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active) {
-    const Model& of = model(kind);
-    const RigidMotion r = of.rigid_motion(make_configuration(of, values, active));
-    return py::make_tuple(r.shape, r.inertia, r.effort_per_command);
-  }, py::arg("kind"), py::arg("values"), py::arg("active"),
-  "Motion of each degree of freedom with the first if nothing stretched, inertia and effort per unit of command.");
-  py::class_<Signal>(module, "Signal", "A piecewise cubic in time, from knots (m,) and coefficients (m, 4) about each knot.")
+  module.def(
+      "rigid_motion",
+      [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active) {
+        const Model& of = model(kind);
+        const RigidMotion r = of.rigid_motion(make_configuration(of, values, active));
+        return py::make_tuple(r.shape, r.inertia, r.effort_per_command);
+      },
+      py::arg("kind"), py::arg("values"), py::arg("active"),
+      "Motion of each degree of freedom with the first if nothing stretched, inertia and effort per unit of command.");
+  py::class_<Signal>(module, "Signal",
+                     "A piecewise cubic in time, from knots (m,) and coefficients (m, 4) about each knot.")
       .def(py::init<>())
       .def(py::init(&make_signal), py::arg("knots"), py::arg("coefficients"), py::arg("holds"));
   py::class_<Loop>(module, "Loop", "How the command comes about: open, injection or controller.")
@@ -132,20 +137,27 @@ void bind_systems(py::module_& module) {
   py::class_<Experiment>(module, "Experiment", "One experiment as the simulator needs it.")
       .def(py::init(&make_experiment), py::kw_only(), py::arg("kind"), py::arg("time"), py::arg("inputs"),
            py::arg("loop"), py::arg("position"), py::arg("velocity"))
-      .def("started", [](const Experiment& of, std::vector<double> position, std::vector<double> velocity) {
-             if (position.size() != of.position.size() || velocity.size() != of.velocity.size())
-               throw ParameterError(sentence("initial state: expected ", of.position.size(), " positions and as many velocities"));
-             Experiment other = of;
-             other.position = std::move(position), other.velocity = std::move(velocity);
-             return other;
-           }, py::arg("position"), py::arg("velocity"), "The same experiment from another initial state.")
-      .def("until", [](const Experiment& of, std::size_t samples) {
-             if (samples < 2 || samples > of.time.size())
-               throw ParameterError(sentence("samples = ", samples, ": expected 2 to ", of.time.size()));
-             Experiment other = of;
-             other.time.resize(samples);
-             return other;
-           }, py::arg("samples"), "The first samples of the experiment.")
+      .def(
+          "started",
+          [](const Experiment& of, std::vector<double> position, std::vector<double> velocity) {
+            if (position.size() != of.position.size() || velocity.size() != of.velocity.size())
+              throw ParameterError(
+                  sentence("initial state: expected ", of.position.size(), " positions and as many velocities"));
+            Experiment other = of;
+            other.position = std::move(position), other.velocity = std::move(velocity);
+            return other;
+          },
+          py::arg("position"), py::arg("velocity"), "The same experiment from another initial state.")
+      .def(
+          "until",
+          [](const Experiment& of, std::size_t samples) {
+            if (samples < 2 || samples > of.time.size())
+              throw ParameterError(sentence("samples = ", samples, ": expected 2 to ", of.time.size()));
+            Experiment other = of;
+            other.time.resize(samples);
+            return other;
+          },
+          py::arg("samples"), "The first samples of the experiment.")
       .def_readonly("time", &Experiment::time)
       .def_readonly("position", &Experiment::position)
       .def_readonly("velocity", &Experiment::velocity);

@@ -1,0 +1,29 @@
+#pragma once
+// How dimensions and purposes are called outside, and in what units: the one place that says so.
+#include "tendonlab/core/parameter.hpp"
+
+namespace tendonlab::bindings {
+struct DimensionWords {
+  const char *name, *rotary, *linear;
+};
+/// In the order of `Dimension`. Unless a dataset says otherwise the command is the effort itself.
+inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
+                                                     {"flow", "rad/s", "m/s"},
+                                                     {"displacement", "rad", "m"},
+                                                     {"inertia", "kg*m^2", "kg"},
+                                                     {"damping", "N*m*s/rad", "N*s/m"},
+                                                     {"stiffness", "N*m/rad", "N/m"},
+                                                     {"ratio", "1", "1"},
+                                                     {"time", "s", "s"},
+                                                     {"command", "N*m", "N"},
+                                                     {"effort_per_command", "N*m", "N"},
+                                                     {"output", "unit of its signal", "unit of its signal"}};
+inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape"};
+
+inline const DimensionWords& words(Dimension dimension) {
+  return dimension_words[static_cast<int>(dimension)];
+}
+inline const char* word(Purpose purpose) {
+  return purpose_words[static_cast<int>(purpose)];
+}
+}  // namespace tendonlab::bindings
