@@ -55,14 +55,27 @@ def _parser() -> argparse.ArgumentParser:
     from tendonlab.blind.commands import add_parser as add_blind
 
     parser = argparse.ArgumentParser(
-        prog="tendonlab", description="Why does the simulator of a cable- or tendon-driven mechanism miss the rig?"
+        prog="tendonlab",
+        description="Why does the simulator of a cable- or tendon-driven mechanism miss the rig?",
+        epilog="Start with `tendonlab demo`; `tendonlab COMMAND --help` tells more.",
     )
     parser.add_argument("--version", action="version", version=f"tendonlab {__version__}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    commands = _commands(parser, dest="command", metavar="COMMAND")
     for add in (_add_demo, _add_diagnose, _add_identify, _add_simulate, _add_effects, _add_systems, _add_datasets):
         add(commands)
     add_blind(commands)
     return parser
+
+
+def _commands(parser: argparse.ArgumentParser, *, dest: str, metavar: str) -> Any:
+    """What stands for one of several commands; without any of them, the help of all."""
+
+    def explain(_: Arguments) -> int:
+        parser.print_help()
+        return 0
+
+    parser.set_defaults(run=explain)
+    return parser.add_subparsers(dest=dest, metavar=metavar)
 
 
 def _command(commands: Any, name: str, run: Callable[[Arguments], int], text: str) -> argparse.ArgumentParser:
@@ -89,7 +102,7 @@ def _add_diagnose(commands: Any) -> None:
 def _add_identify(commands: Any) -> None:
     parser = _command(commands, "identify", _identify, "fit the free parameters to the training experiments")
     parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
-    parser.add_argument("--effects", default="", metavar="A,B", help="add these first, such as joint:stribeck")
+    _add_effect_names(parser)
     parser.add_argument("--starts", type=int, default=1, metavar="N", help="default: 1 starting point")
     parser.add_argument("--out", type=Path, metavar="FILE.json", help="write the result here")
     _add_progress(parser)
@@ -99,7 +112,7 @@ def _add_simulate(commands: Any) -> None:
     parser = _command(commands, "simulate", _simulate, "simulate one experiment and compare it with what was measured")
     parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
     parser.add_argument("--experiment", metavar="NAME", help="default: the first held-out one")
-    parser.add_argument("--effects", nargs="+", default=[], metavar="EFFECT", help="add these, such as joint:stribeck")
+    _add_effect_names(parser)
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameter values, SI")
     parser.add_argument("--out", type=Path, metavar="FILE.csv", help="write t and every simulated output here")
 
@@ -107,21 +120,29 @@ def _add_simulate(commands: Any) -> None:
 def _add_effects(commands: Any) -> None:
     parser = _command(commands, "effects", _effects, "list the effects a system takes, with equations and parameters")
     parser.add_argument("--system", metavar="KIND", help="default: all systems")
-    parser.add_argument("--axis", choices=("rotary", "linear"), default="rotary", help="units; default: %(default)s")
+    _add_axis(parser)
 
 
 def _add_systems(commands: Any) -> None:
-    _command(commands, "systems", _systems, "list the systems, with equations, signals and parameters")
+    _add_axis(_command(commands, "systems", _systems, "list the systems, with equations, signals and parameters"))
 
 
 def _add_datasets(commands: Any) -> None:
-    parser = commands.add_parser("datasets", help="list or fetch public recordings of real rigs")
-    verbs = parser.add_subparsers(dest="verb", required=True, metavar="list|prepare")
+    text = "list or fetch public recordings of real rigs"
+    verbs = _commands(commands.add_parser("datasets", help=text, description=text), dest="verb", metavar="list|prepare")
     _command(verbs, "list", _list_datasets, "list the recordings that can be prepared")
     prepare = _command(verbs, "prepare", _prepare, "fetch a recording, check it and write its dataset folder")
     prepare.add_argument("name", metavar="NAME")
     prepare.add_argument("--source", type=Path, metavar="DIR", help="folder that holds its files already")
     prepare.add_argument("--out", type=Path, metavar="DIR", help="default: ./NAME")
+
+
+def _add_effect_names(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--effects", nargs="+", default=[], metavar="EFFECT", help="add these, such as joint:stribeck")
+
+
+def _add_axis(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--axis", choices=("rotary", "linear"), default="rotary", help="units; default: %(default)s")
 
 
 def _add_progress(parser: argparse.ArgumentParser) -> None:
@@ -166,8 +187,7 @@ def _identify(given: Arguments) -> int:
     from tendonlab.terminal import identification_text
 
     rig = load(given.dataset)
-    names = [name.strip() for name in given.effects.split(",") if name.strip()]
-    fit = identify(rig, effects=names, num_starts=given.starts, progress=_progress(given))
+    fit = identify(rig, effects=given.effects, num_starts=given.starts, progress=_progress(given))
     print(identification_text(fit))
     if given.out is not None:
         given.out.write_text(json.dumps(fit.to_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
@@ -229,7 +249,7 @@ def _systems(given: Arguments) -> int:
     from tendonlab.catalog import kinds, system_info
     from tendonlab.terminal import system_text
 
-    print("\n\n".join(system_text(system_info(kind)) for kind in kinds()))
+    print("\n\n".join(system_text(system_info(kind), axis=given.axis) for kind in kinds()))
     return 0
 
 

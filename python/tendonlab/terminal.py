@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from tendonlab.catalog import parameter_unit
+from tendonlab.catalog import parameter_unit, unit
 from tendonlab.confusions import confusions
 from tendonlab.report.numbers import number, prefixed, probability, span, unit_text
 from tendonlab.report.words import REPLAYS, capital, gain_words, listing, parameter_words, phrase
@@ -173,19 +173,23 @@ def errors_text(run: Trajectory, experiment: Experiment) -> str:
     return table(rows, right=range(2, 5))
 
 
-def system_text(info: SystemInfo) -> str:
-    """A system: equation, signals, parameters, where effects sit."""
-    optional = [s.name if s.required else f"[{s.name}]" for s in info.inputs]
-    facts = (
-        ("inputs", ", ".join(optional)),
-        ("outputs", ", ".join(s.name for s in info.outputs)),
-        ("parameters", ", ".join(_nominal_parameters(info))),
-        ("elements", ", ".join(info.elements)),
-        ("contains", ", ".join(info.default_nominal_effects) + " unless the dataset says otherwise"),
-    )
-    lines = [info.kind, wrapped(info.equation, indent="  ")]
-    lines += [wrapped(f"{name + ':':<11} {text}", indent="  ", hanging=" " * 14) for name, text in facts]
-    return "\n".join(lines)
+def system_text(info: SystemInfo, *, axis: str) -> str:
+    """A system: equation, signals and parameters with their units, and what its simulator contains."""
+    lines = [f"{info.kind}: units of a {axis} axis"]
+    lines += [wrapped(part.strip(), indent="  ", hanging=" " * 6) for part in info.equation.split(";")]
+    for title, signals in (("inputs", info.inputs), ("outputs", info.outputs)):
+        rows = [(s.name, unit(s.dimension, axis), s.meaning + ("" if s.required else ", optional")) for s in signals]
+        lines += [f"  {title}", *(_named(*row) for row in rows)]
+    own = [info.parameter(name) for name in _nominal_parameters(info)]
+    lines += ["  parameters", *(_named(row.name, parameter_unit(info, row, axis), row.meaning) for row in own)]
+    contains = f"contains {listing(info.default_nominal_effects)}, unless the dataset says otherwise"
+    return "\n".join([*lines, wrapped(contains, indent="  ", hanging=" " * 6)])
+
+
+def _named(name: str, unit: str, meaning: str) -> str:
+    """A line of a list: "- joint_inertia (kg·m²): what it is"."""
+    shown = unit_text(unit)
+    return wrapped(f"{name} ({shown}): {meaning}" if shown else f"{name}: {meaning}", indent="    - ", hanging=" " * 6)
 
 
 def effects_text(info: SystemInfo, *, axis: str) -> str:
@@ -199,18 +203,16 @@ def _effect_entry(info: SystemInfo, effect: Effect, axis: str) -> str:
     nominal = effect.name in info.default_nominal_effects
     lines = [
         f"  {effect.name}{'  (in the simulator unless the dataset says otherwise)' if nominal else ''}",
-        wrapped(f"{effect.equation}   [{effect.source}]", indent="      "),
-        wrapped(effect.summary, indent="      "),
+        wrapped(f"{effect.equation}   [{effect.source}]", indent="    "),
+        wrapped(effect.summary, indent="    "),
     ]
     for name in effect.parameters:
         row = info.parameter(name)
-        unit = unit_text(parameter_unit(info, row, axis))
-        text = f"{name} ({unit}): {row.meaning}" if unit else f"{name}: {row.meaning}"
-        lines.append(wrapped(text, indent="      - ", hanging=" " * 8))
+        lines.append(_named(name, parameter_unit(info, row, axis), row.meaning))
     for confusion in confusions(info, effect.name):
         others = listing(confusion.effects, last="or")
         lines.append(
-            wrapped(f"easily mistaken for {others}; what separates them: {confusion.separates}", indent="      ")
+            wrapped(f"easily mistaken for {others}; what separates them: {confusion.separates}", indent="    ")
         )
     return "\n".join(lines)
 

@@ -42,8 +42,9 @@ def test_systems_lists_every_kind_with_its_signals(capsys: Printed) -> None:
     out = capsys.readouterr().out
     for kind in tl.kinds():
         info = tl.system_info(kind)
-        assert kind in out.splitlines()
-        assert all(signal.name in out for signal in (*info.inputs, *info.outputs))
+        assert f"{kind}: units of a rotary axis" in out.splitlines()
+        assert all(f"- {signal.name} (" in out for signal in (*info.inputs, *info.outputs))
+    assert "- joint_inertia (kg·m²): " in out
 
 
 @pytest.mark.parametrize(("axis", "unit"), [("rotary", "N·m"), ("linear", "N")])
@@ -102,7 +103,7 @@ def test_identify_finds_the_parameters_and_prints_nothing_else(tiny: Path, tmp_p
 
 
 def test_identify_adds_effects(capsys: Printed, tiny: Path) -> None:
-    assert main(["identify", str(tiny), "--effects", "joint:stribeck,actuation:offset"]) == 0
+    assert main(["identify", str(tiny), "--effects", "joint:stribeck", "actuation:offset"]) == 0
     out = capsys.readouterr().out
     assert "joint_static_excess" in out
     assert "actuation_offset" in out
@@ -163,6 +164,17 @@ def test_what_cannot_be_done_is_one_line_and_exit_code_2(
     assert printed.err.startswith("tendonlab: ")
     assert printed.err.count("\n") == 1
     assert told in printed.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"), [([], "tendonlab demo"), (["datasets"], "prepare"), (["blind"], "draw")]
+)
+def test_a_command_without_a_verb_is_explained(capsys: Printed, arguments: list[str], told: str) -> None:
+    assert main(arguments) == 0
+    printed = capsys.readouterr()
+    assert printed.out.startswith("usage: tendonlab")
+    assert told in printed.out
+    assert printed.err == ""
 
 
 def test_a_wrong_command_line_is_exit_code_2(capsys: Printed) -> None:

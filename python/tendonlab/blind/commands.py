@@ -17,12 +17,17 @@ def add_parser(subparsers: Any) -> None:
     """Add `blind` to the subparsers of the command line; the chosen verb is called as `given.run(given)` and returns
     an exit code.
     """
-    blind = subparsers.add_parser("blind", help="check the diagnosis on synthetic rigs whose truth is sealed")
-    _add_verbs(blind)
+    text = "check the diagnosis on synthetic rigs whose truth is sealed"
+    _add_verbs(subparsers.add_parser("blind", help=text, description=text))
 
 
 def _add_verbs(parser: argparse.ArgumentParser) -> None:
-    verbs = parser.add_subparsers(dest="verb", required=True, metavar="draw|run|score")
+    def explain(_: argparse.Namespace) -> int:
+        parser.print_help()
+        return 0
+
+    parser.set_defaults(run=explain)
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|score")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth into OUT/sealed")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -70,7 +75,8 @@ def _score(given: argparse.Namespace) -> int:
 
 def main() -> int:
     """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|score."""
-    parser = argparse.ArgumentParser(prog="python -m tendonlab.blind")
+    text = "check the diagnosis on synthetic rigs whose truth is sealed"
+    parser = argparse.ArgumentParser(prog="python -m tendonlab.blind", description=text)
     _add_verbs(parser)
     given = parser.parse_args()
     return int(given.run(given))

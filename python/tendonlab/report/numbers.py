@@ -17,7 +17,7 @@ def number(value: float | None, digits: int = 3) -> str:
         return ABSENT
     mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
     exponent = int(power)
-    if -4 <= exponent < 5:
+    if -3 <= exponent < 5:
         text = f"{float(f'{value:.{digits - 1}e}'):.{max(0, digits - 1 - exponent)}f}"
         text = text.rstrip("0").rstrip(".") if "." in text else text
     else:
