@@ -1,12 +1,21 @@
-"""What all tests share: no display, and the measured data where they lie beside the repository."""
+"""What all tests share: no display, the measured data where they lie beside the repository, one run of the demo."""
 
 import os
 from pathlib import Path
 
 import matplotlib
+import pytest
+
+from twin import TwinDiagnosis, run_demo
 
 matplotlib.use("Agg")
 
 _MEASURED = Path(__file__).resolve().parents[2] / "shared" / "data"
 if _MEASURED.is_dir():
     os.environ.setdefault("TENDONLAB_DATA", str(_MEASURED))
+
+
+@pytest.fixture(scope="session")
+def twin_diagnosis(tmp_path_factory: pytest.TempPathFactory) -> TwinDiagnosis:
+    """The diagnosis of the bundled rig, by far the longest run of all tests: once, as a user runs it."""
+    return run_demo(tmp_path_factory.mktemp("demo"))

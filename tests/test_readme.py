@@ -13,6 +13,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab import cli
+from twin import TwinDiagnosis
 
 ROOT = Path(__file__).resolve().parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -22,12 +23,12 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", TEXT, re.S)
 
 
-def test_the_tour_runs_as_written(tmp_path: Path) -> None:
-    """In a process of its own, beside a `data` folder as in a clone."""
+def test_the_tour_runs_as_written(tmp_path: Path, twin_diagnosis: TwinDiagnosis) -> None:
+    """In a process of its own, beside a `data` folder as in a clone; what the demo found is not sought again."""
     (tmp_path / "data").symlink_to(ROOT / "data")
     (code,) = blocks("python")
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code],
+        [sys.executable, "-W", "error", "-c", twin_diagnosis.reuse + code],
         cwd=tmp_path,
         env={**os.environ, "MPLBACKEND": "Agg"},
         capture_output=True,

@@ -12,6 +12,7 @@ import pytest
 import tendonlab as tl
 from tendonlab import demo
 from tendonlab.cli import main
+from twin import TwinDiagnosis
 
 Printed = pytest.CaptureFixture[str]
 
@@ -83,6 +84,12 @@ def test_simulate_compares_with_what_was_measured(capsys: Printed, tiny: Path, t
     pd.testing.assert_frame_equal(written, expected, rtol=1e-8)  # nine digits are written
 
 
+def test_simulate_prints_nothing_to_stderr(tiny: Path, tmp_path: Path) -> None:
+    done = run("simulate", tiny, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "joint_angle" in done.stdout
+
+
 def test_simulate_takes_values_and_effects(tiny: Path, tmp_path: Path) -> None:
     arguments = ["--experiment", "run-1", "--effects", "joint:stribeck", "--out", str(tmp_path / "out.csv")]
     values = ["coulomb=0.04", "joint_static_excess=0.02", "joint_stribeck_velocity=0.1"]
@@ -120,13 +127,18 @@ def test_diagnose_says_the_verdict_and_writes_the_report(tiny: Path, tmp_path: P
     assert (report["verdict"], report["seed"]) == ("parameters_only", 3)
 
 
-def test_demo_names_the_missing_effect(tmp_path: Path) -> None:
-    done = run("demo", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    report = json.loads((tmp_path / "tendonlab-demo" / "report.json").read_text(encoding="utf-8"))
-    assert report["verdict"] == "effect"
-    assert "tendonlab-demo/report.html" in done.stdout
-    assert (tmp_path / "tendonlab-demo" / "report.html").is_file()
+def test_demo_names_the_missing_effect(twin_diagnosis: TwinDiagnosis) -> None:
+    out = twin_diagnosis.folder / "tendonlab-demo"
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    assert (report["verdict"], report["selected"]) == ("effect", ["joint:stribeck"])
+    assert "Stribeck friction at the joint" in twin_diagnosis.printed.stdout
+    assert "tendonlab-demo/report.html" in twin_diagnosis.printed.stdout
+    assert {path.name for path in out.iterdir() if path.suffix == ".png"} >= {"gap.png", "overlay.png", "where.png"}
+    assert (out / "report.html").is_file()
+
+
+def test_demo_prints_nothing_to_stderr(twin_diagnosis: TwinDiagnosis) -> None:
+    assert twin_diagnosis.printed.stderr == ""
 
 
 def test_the_bundled_rig_comes_without_its_truth() -> None:

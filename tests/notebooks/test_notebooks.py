@@ -6,16 +6,19 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
+from twin import TwinDiagnosis
+
 NOTEBOOKS = sorted((Path(__file__).resolve().parents[2] / "notebooks").glob("*.ipynb"))
-LONGEST = 120  # s a cell: a minute for the notebook, and as much again for a busy machine
+LONGEST = 60  # s a cell, on a busy machine
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In an empty folder: a notebook may rely on nothing but the package."""
+def test_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, twin_diagnosis: TwinDiagnosis) -> None:
+    """In an empty folder: a notebook may rely on nothing but the package. What the demo found is not sought again."""
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     monkeypatch.setenv("PYDEVD_DISABLE_FILE_VALIDATION", "1")
     notebook = nbformat.read(path, as_version=4)
+    notebook.cells.insert(0, nbformat.v4.new_code_cell(twin_diagnosis.reuse))
     NotebookClient(notebook, timeout=LONGEST, resources={"metadata": {"path": str(tmp_path)}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert [output.text for output in outputs if output.get("name") == "stderr"] == []
