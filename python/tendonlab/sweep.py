@@ -3,60 +3,113 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
 from tqdm import tqdm
 
+from tendonlab.catalog import unit
+from tendonlab.data import Experiment
+from tendonlab.errors import NumericalError, ParameterError
+
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from tendonlab.data import Experiment
     from tendonlab.system import System
 
 
 def sweep(
     system: System,
-    grid: Mapping[str, Sequence[float]],
+    grid: Mapping[str, Sequence[float] | np.ndarray],
     *,
     experiment: Experiment | pd.DataFrame,
     tolerance: float = 1e-6,
     executor: Executor | None = None,
     progress: bool = True,
 ) -> xr.Dataset:
-    """Simulate `experiment` at every point of `grid` (parameter name -> values): one variable an output, with the
-    grid's parameters and time as dimensions.
+    """Simulate `experiment` at every point of `grid`: parameter name -> values, SI, shape (n,).
 
-    `executor`: any concurrent.futures executor (threads by default: the core releases the interpreter).
-    Raises ParameterError for an unknown parameter or a value outside its bounds, before anything is simulated."""
+    Gives one variable an output, in its unit (attribute `unit`), with the grid's parameters in the order given and the
+    time "t", s, as dimensions. The coordinate `message`, over the grid, is empty where the run went well; elsewhere it
+    says what failed, or "interrupted" after Ctrl-C, and the outputs hold NaN: one bad point costs no other. The same
+    call gives the same bits, whatever runs it.
+    `tolerance`: relative error of a step. `executor`: any concurrent.futures executor, which stays open; without one,
+    a thread a processor (the core releases the interpreter).
+    Raises, before anything is simulated, ParameterError for an unknown parameter, a value outside its bounds or an axis
+    without values; DatasetError for a missing input; NumericalError where every point failed."""
+    axes = {name: _axis(name, values) for name, values in grid.items()}
+    points = [
+        dict(zip(axes, values, strict=True)) for values in itertools.product(*(v.tolist() for v in axes.values()))
+    ]
+    systems = [system.with_parameters(point) for point in points]
+    time = (experiment.data if isinstance(experiment, Experiment) else experiment).index.to_numpy(dtype=float)
+    outputs = np.full((len(points), len(system.info.outputs), len(time)), np.nan)
+    messages = ["interrupted"] * len(points)
+    with _threads() if executor is None else _borrowed(executor) as pool:
+        jobs = {pool.submit(_outputs, one, experiment, tolerance): place for place, one in enumerate(systems)}
+        try:
+            for job in tqdm(as_completed(jobs), total=len(jobs), desc="sweep", unit="run", disable=not progress):
+                messages[jobs[job]] = _keep(job, outputs[jobs[job]])
+        except BaseException as error:
+            for job in jobs:
+                job.cancel()
+            if not isinstance(error, KeyboardInterrupt) or "" not in messages:
+                raise
+    if "" not in messages:
+        raise NumericalError(f"none of {len(points)} points could be simulated; the first: {messages[0]}")
+    return _dataset(system, axes, time, outputs, messages)
+
+
+def _axis(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
+    axis = np.asarray(values, dtype=float)
+    if axis.ndim != 1 or axis.size == 0:
+        raise ParameterError(f"{name} has shape {axis.shape}: expected a list of values, shape (n,), n > 0")
+    return axis
+
+
+@contextmanager
+def _threads() -> Iterator[Executor]:
+    pool = ThreadPoolExecutor(max_workers=os.cpu_count() or 1)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _borrowed(executor: Executor) -> Iterator[Executor]:
+    yield executor
+
+
+def _outputs(system: System, experiment: Experiment | pd.DataFrame, tolerance: float) -> np.ndarray:
+    return system.simulate(experiment, tolerance=tolerance).outputs.to_numpy().T
+
+
+def _keep(job: Future[np.ndarray], into: np.ndarray) -> str:
+    """Copy the outputs of a run; what failed, or nothing. A fault that all runs share is raised."""
+    try:
+        into[:] = job.result()
+    except NumericalError as error:
+        return str(error)
+    return ""
+
+
+def _dataset(
+    system: System, axes: Mapping[str, np.ndarray], time: np.ndarray, outputs: np.ndarray, messages: Sequence[str]
+) -> xr.Dataset:
     import xarray as xr
 
-    axes = {name: np.asarray(values, dtype=float) for name, values in grid.items()}
-    points = [dict(zip(axes, values, strict=True)) for values in itertools.product(*axes.values())]
-    systems = [system.with_parameters(point) for point in points]
-    own = ThreadPoolExecutor() if executor is None else None
-    try:
-        pool = own if executor is None and own is not None else executor
-        assert pool is not None
-        jobs = [pool.submit(_outputs, one, experiment, tolerance) for one in systems]
-        runs = [job.result() for job in tqdm(jobs, desc="sweep", disable=not progress)]
-    finally:
-        if own is not None:
-            own.shutdown(cancel_futures=True)
-    time, names = runs[0].index.to_numpy(), list(runs[0].columns)
-    shape = (*(len(v) for v in axes.values()), len(time))
+    shape = tuple(len(values) for values in axes.values())
+    signals = system.info.outputs
     variables = {
-        name: ((*axes, "t"), np.array([run[name].to_numpy() for run in runs]).reshape(shape)) for name in names
+        s.name: ((*axes, "t"), outputs[:, k].reshape(*shape, len(time)), {"unit": unit(s.dimension, system.axis)})
+        for k, s in enumerate(signals)
     }
-    units = {name: system.unit(name) for name in axes}
-    dataset = xr.Dataset(variables, coords={**axes, "t": time})
-    for name, its_unit in units.items():
-        dataset[name].attrs["unit"] = its_unit
-    return dataset
-
-
-def _outputs(system: System, experiment: Experiment | pd.DataFrame, tolerance: float) -> pd.DataFrame:
-    return system.simulate(experiment, tolerance=tolerance).outputs
+    coordinates = {name: (name, values, {"unit": system.unit(name)}) for name, values in axes.items()}
+    said = (tuple(axes), np.array(messages, dtype=object).reshape(shape))
+    return xr.Dataset(variables, coords={**coordinates, "t": ("t", time, {"unit": "s"}), "message": said})
