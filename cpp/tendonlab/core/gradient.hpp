@@ -13,6 +13,15 @@ struct Gradient {
   Gradient() : value{}, d{} {}
   Gradient(double a) : value(Word{} + a), d{} {}
   double derivative(int i) const { return d[i / 8][i % 8]; }
+  /// Calls f(derivative) for the first `count` of them.
+  template <class F>
+  void each_derivative(int count, F&& f) const {
+    for (int w = 0; w < words; ++w)
+      for (int k = 0; k < 8; ++k) {
+        if (8 * w + k >= count) return;
+        f(d[w][k]);
+      }
+  }
   void seed(int i, double slope) { d[i / 8][i % 8] = slope; }
 };
 template <int words>

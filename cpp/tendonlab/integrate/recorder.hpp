@@ -78,10 +78,14 @@ class Recorder {
   }
   void write(std::size_t channel, std::size_t sample, const T& value) {
     out.value[channel * time.size() + sample] = plain(value);
-    if constexpr (!std::is_same_v<T, double>)
-      for (int k = 0; k < width; ++k)
-        out.gradient[(static_cast<std::size_t>(column + k) * channels + channel) * time.size() + sample] =
-            value.derivative(k);
+    if constexpr (!std::is_same_v<T, double>) {
+      const std::size_t stride = channels * time.size();
+      double* cell = &out.gradient[static_cast<std::size_t>(column) * stride + channel * time.size() + sample];
+      value.each_derivative(width, [&](double d) {
+        *cell = d;
+        cell += stride;
+      });
+    }
   }
   /// Velocity, position, load and force of each port; a sticking port's friction is what holds it, borne by the first
   /// slot of its mode.
