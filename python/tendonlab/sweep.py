@@ -40,7 +40,7 @@ def sweep(
     call gives the same bits, whatever runs it.
     `tolerance`: relative error of a step. `executor`: any concurrent.futures executor, which stays open; without one,
     a thread a processor (the core releases the interpreter).
-    Raises, before anything is simulated, ParameterError for an unknown parameter, a value outside its bounds or an axis
+    Raises ParameterError, before anything is simulated, for an unknown parameter, a value outside its bounds or an axis
     without values; DatasetError for a missing input; NumericalError where every point failed."""
     axes = {name: _axis(name, values) for name, values in grid.items()}
     points = [

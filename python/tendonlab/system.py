@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from tendonlab.catalog import SystemInfo, nearest, parameter_unit, system_info
+from tendonlab.catalog import AXES, SystemInfo, nearest, parameter_unit, system_info
 from tendonlab.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -21,8 +21,9 @@ _LEVEL, _MEMORY = 2, 16  # bits of an effect's `roles`: adds to dry friction; sh
 
 @dataclass(frozen=True, kw_only=True)
 class System:
-    """A simulator of one kind. `parameters` holds the value, SI, of each parameter of the system and of its `effects`
-    ("joint:stribeck"); `controller` closes its loop in a replay where it is known.
+    """A simulator of one `kind` (see `kinds`) on a "rotary" or "linear" axis. `parameters` holds the value, SI, of each
+    parameter of the system and of its `effects` ("joint:stribeck"); `controller` closes its loop in a replay where it
+    is known. It never changes: `with_parameters` and `with_effects` give another one.
 
     Raises ParameterError for an unknown or missing name or a value outside its bounds."""
 
@@ -33,6 +34,8 @@ class System:
     controller: Controller | None = None
 
     def __post_init__(self) -> None:
+        if self.axis not in AXES:
+            raise ParameterError(f"axis = {self.axis!r}: expected one of {', '.join(AXES)}")
         for name in self.effects:
             self._require_company(name)
         known = self._own_names()
@@ -61,17 +64,18 @@ class System:
         return system_info(self.kind)
 
     def unit(self, name: str) -> str:
-        """Unit of a parameter on this system's axis."""
+        """Unit of a parameter on this system's axis, as in "N*m*s/rad". Raises ParameterError for an unknown one."""
         return parameter_unit(self.info, self.info.parameter(name), self.axis)
 
     def with_parameters(self, values: Mapping[str, float]) -> System:
-        """The same simulator with other values for some parameters."""
+        """The same simulator with other values, SI, for some parameters. Raises ParameterError as System does."""
         return replace(self, parameters={**self.parameters, **values})
 
     def with_effects(self, effects: Mapping[str, Mapping[str, float]]) -> System:
         """The simulator with effects added: {"joint:stribeck": {"static_excess": 0.1, "stribeck_velocity": 0.05}}.
 
-        Parameters go by their own or their full name."""
+        Parameters go by their own or their full name, values are SI. An effect whose amplitude is exactly 0 changes
+        nothing, to the last bit. Raises ParameterError for an unknown effect or parameter, or where one is missing."""
         values = dict(self.parameters)
         names = list(self.effects)
         for name, given in effects.items():
@@ -113,7 +117,8 @@ class System:
 
         `experiment`: an experiment of a dataset, or a frame indexed by time, s, with a column an input. `replay`:
         "controller" (rig and known controller in free run), "free" (logged inputs only) or "auto" (the controller where
-        the simulator knows it and the reference was logged). `ports`: also what each port sees and does.
+        the simulator knows it and the reference was logged). `tolerance`: relative error of a step. `ports`: also what
+        each port sees and does.
         Raises DatasetError for a missing input, NumericalError where the integration fails."""
         from tendonlab.replay import simulate
 

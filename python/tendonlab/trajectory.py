@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from tendonlab.catalog import nearest
+from tendonlab.errors import ParameterError
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
@@ -12,8 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Trajectory:
-    """A simulated run. `outputs`: indexed by time "t", s, one column a signal, SI. `ports`: the same with columns
-    (port, "velocity" | "position" | "load" | "force") where asked for. `num_attempts`, `num_events`: of the stepper."""
+    """A simulated run; `run["joint_angle"]` is one output. `outputs`: indexed by time "t", s, one column a signal, SI.
+
+    `units`: of each output. `ports`: a frame with columns (port, "velocity" | "position" | "load" | "force") where it
+    was asked for. `num_attempts`: steps that were tried; `num_events`: reversals, stops and edges that were met."""
 
     outputs: pd.DataFrame = field(repr=False)
     units: dict[str, str] = field(repr=False)
@@ -22,21 +27,33 @@ class Trajectory:
     num_events: int = 0
 
     def __getitem__(self, signal: str) -> pd.Series:
-        return self.outputs[signal]
+        return self.outputs[self._known(signal)]
 
     def plot(self, ax: Axes | None = None, *, signal: str | None = None) -> Axes:
-        """Draw one output (the first unless named) against time."""
+        """Draw one output (the first unless named) against time on `ax`, or on the current axes.
+
+        Raises ParameterError for an output that the system does not have."""
         import matplotlib.pyplot as plt
 
         ax = plt.gca() if ax is None else ax
-        name = str(self.outputs.columns[0]) if signal is None else signal
+        name = str(self.outputs.columns[0]) if signal is None else self._known(signal)
         ax.plot(self.outputs.index, self.outputs[name], lw=1.0, label=name)
         ax.set(xlabel="time (s)", ylabel=f"{name} ({self.units[name]})")
         return ax
 
+    def _known(self, signal: str) -> str:
+        if signal not in self.outputs.columns:
+            raise ParameterError(f"{signal!r} is no output; {nearest(signal, [str(c) for c in self.outputs.columns])}")
+        return signal
+
     def to_dict(self) -> dict[str, Any]:
         """Time and outputs as lists."""
         return {"t": self.outputs.index.tolist(), **{str(c): self.outputs[c].tolist() for c in self.outputs.columns}}
+
+    def __repr__(self) -> str:
+        time = self.outputs.index
+        span = f", {time[0]:g} to {time[-1]:g} s" if len(time) else ""
+        return f"Trajectory({', '.join(map(str, self.outputs.columns))}; {len(time)} samples{span})"
 
     def _repr_html_(self) -> str:
         return str(self.outputs.describe().to_html())

@@ -93,7 +93,12 @@ class Experiment:
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # frames have no plain equality
 class Dataset:
-    """A checked dataset. `dataset["sweep-1"]` is one experiment; `warnings` says in words what was assumed."""
+    """A checked dataset: a rig's logs and the simulator they are compared with. What `load` gives.
+
+    `dataset["sweep-1"]` is one experiment (DatasetError where there is none of that name), and looping gives them all.
+    `kind`, `axis` ("rotary" or "linear"), `nominal_effects` and `parameters` (value, sd, bounds, SI) describe the
+    simulator; `controller` closes its loop where it is known; `signals`: what was recorded, by name; `warnings`: what
+    was assumed, in words."""
 
     name: str
     description: str = field(repr=False)
@@ -147,7 +152,9 @@ class Dataset:
         return System.from_dataset(self)
 
     def plot(self, ax: Axes | None = None, *, signal: str | None = None) -> Axes:
-        """Draw `signal` (the first output) of every experiment against time on `ax`."""
+        """Draw `signal` (the first output) of every experiment against time on `ax`, or on the current axes.
+
+        Raises DatasetError for a signal that was not recorded."""
         import matplotlib.pyplot as plt
 
         name = self.outputs[0] if signal is None else signal
@@ -176,6 +183,10 @@ class Dataset:
             "experiments": experiments,
             "warnings": list(self.warnings),
         }
+
+    def __repr__(self) -> str:
+        size = f"{len(self.train)} experiments to fit, {len(self.test)} held out"
+        return f"Dataset({self.name!r}: {self.kind}, {self.axis}; {size})"
 
     def _repr_html_(self) -> str:
         rows = "".join(

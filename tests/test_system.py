@@ -1,0 +1,78 @@
+"""A simulator and what it gives: what is refused and with which words, and the forms in which it is shown."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+import tendonlab as tl
+
+VALUES = {"inertia": 0.02, "gravity_torque": 0.5, "torque_constant": 1.0, "coulomb": 0.05, "viscous": 0.03}
+SIM = tl.System(kind="rigid_joint", parameters=VALUES, effects=("joint:coulomb", "joint:viscous"))
+TIME = np.arange(0.0, 0.5, 0.01)
+PUSHED = pd.DataFrame({"motor_torque": 0.4 * np.sin(6.0 * TIME)}, index=pd.Index(TIME, name="t"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"kind": "rigid_join"}, "system kind = 'rigid_join': did you mean 'rigid_joint'"),
+        ({"axis": "round"}, "axis = 'round': expected one of rotary, linear"),
+        ({"effects": ("joint:stribek",)}, "'joint:stribek' is no effect of rigid_joint; did you mean 'joint:stribeck'"),
+        (
+            {"effects": ("joint:viscous", "joint:presliding")},
+            "joint:presliding takes over the dry friction of its slot",
+        ),
+        ({"effects": ("joint:coulomb",)}, "viscous = 0.03: no parameter of rigid_joint with its effects"),
+        ({"parameters": {**VALUES, "inertia": -1.0}}, r"inertia = -1.0: expected a value in \[1e-12, inf\] kg\*m\^2"),
+        ({"parameters": {**VALUES, "inertia": np.nan}}, "inertia = nan: expected a value in"),
+        (
+            {"parameters": {k: v for k, v in VALUES.items() if k != "coulomb"}},
+            r"coulomb: missing; .* \(kinetic friction",
+        ),
+    ],
+)
+def test_a_simulator_that_cannot_be_is_refused(changes: dict[str, object], told: str) -> None:
+    given = {"kind": SIM.kind, "parameters": VALUES, "effects": SIM.effects} | changes
+    with pytest.raises(tl.ParameterError, match=told):
+        tl.System(**given)
+
+
+def test_changes_leave_the_original_as_it_was() -> None:
+    stribeck = {"static_excess": 0.1, "joint_stribeck_velocity": 0.05}  # own and full names
+    changed = SIM.with_parameters({"inertia": 0.03}).with_effects({"joint:stribeck": stribeck})
+    assert changed.parameters["inertia"] == 0.03
+    assert changed.parameters["joint_static_excess"] == 0.1
+    assert changed.effects == (*SIM.effects, "joint:stribeck")
+    assert (SIM.parameters, SIM.effects) == (VALUES, ("joint:coulomb", "joint:viscous"))
+    with pytest.raises(tl.ParameterError, match="no parameter of joint:stribeck; did you mean 'static_excess'"):
+        SIM.with_effects({"joint:stribeck": {"excess": 0.1}})
+
+
+def test_an_effect_without_amplitude_changes_no_bit() -> None:
+    added = SIM.with_effects({"joint:stribeck": {"static_excess": 0.0, "stribeck_velocity": 0.05}})
+    pd.testing.assert_frame_equal(added.simulate(PUSHED).outputs, SIM.simulate(PUSHED).outputs, check_exact=True)
+
+
+def test_units_follow_the_axis() -> None:
+    linear = tl.System(kind="rigid_joint", parameters=VALUES, effects=SIM.effects, axis="linear")
+    assert [system.unit("viscous") for system in (SIM, linear)] == ["N*m*s/rad", "N*s/m"]
+
+
+def test_a_trajectory_gives_its_outputs_and_draws_them() -> None:
+    run = SIM.simulate(PUSHED)
+    assert repr(run) == "Trajectory(joint_angle, joint_velocity; 50 samples, 0 to 0.49 s)"
+    np.testing.assert_array_equal(run["joint_velocity"], run.outputs["joint_velocity"])
+    assert run.to_dict()["t"] == TIME.tolist()
+    ax = run.plot(Figure().subplots(), signal="joint_velocity")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("time (s)", "joint_velocity (rad/s)")
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), run["joint_velocity"])
+    for ask in (lambda: run["joint_angel"], lambda: run.plot(Figure().subplots(), signal="joint_angel")):
+        with pytest.raises(tl.ParameterError, match="'joint_angel' is no output; did you mean 'joint_angle'"):
+            ask()
+
+
+def test_forms_for_a_notebook_are_short_and_escaped() -> None:
+    assert repr(SIM) == "System(rigid_joint, rotary, effects: joint:coulomb, joint:viscous)"
+    assert "<td>viscous</td><td>0.03</td><td>N*m*s/rad</td>" in SIM._repr_html_()
+    assert SIM.to_dict()["parameters"] == VALUES
