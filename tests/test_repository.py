@@ -106,7 +106,7 @@ def test_no_path_of_a_machine_is_in_a_file() -> None:
     assert found == []
 
 
-@pytest.mark.parametrize("tool", ["ruff check --no-cache .", "mypy"])
+@pytest.mark.parametrize("tool", ["ruff check --no-cache .", "ruff format --check --no-cache .", "mypy"])
 def test_tools_are_content(tool: str) -> None:
     done = subprocess.run(
         [sys.executable, "-m", *tool.split()], cwd=ROOT, capture_output=True, encoding="utf-8", check=False
