@@ -11,6 +11,20 @@ import pytest
 from tendonlab.diagnose.result import Diagnosis, EffectFinding, Overlay, SideTable, WhereMap
 
 
+WHERE = {
+    "signals": [{"signal": "joint_angle", "share": 0.8}, {"signal": "motor_angle", "share": 0.2}],
+    "elements": [
+        {"element": "joint", "probability": 0.93},
+        {"element": "contact", "probability": 0.05},
+        {"element": "sensor.joint_angle", "probability": 0.02},
+    ],
+    "regimes": [
+        {"coordinate": "joint_velocity", "range": [-0.05, 0.05], "share": 0.7, "p_value": 1e-6},
+        {"coordinate": "time", "range": [8.0, 12.0], "share": 0.31, "p_value": np.float64(0.4)},
+    ],
+}
+
+
 def overlay(signals: dict[str, float]) -> Overlay:
     random = np.random.default_rng(3)
     time = np.arange(0.0, 12.0, 0.01)
@@ -111,18 +125,7 @@ def effect() -> Diagnosis:
             "motor_angle": {"noise_floor": 4e-4, "nominal": 0.021, "refitted": 0.0092, "with_effect": 4.9e-4},
             "joint_angle": {"noise_floor": 1e-3, "nominal": 0.031, "refitted": 0.022, "with_effect": 0.0013},
         },
-        where={
-            "signals": [{"signal": "joint_angle", "share": 0.8}, {"signal": "motor_angle", "share": 0.2}],
-            "elements": [
-                {"element": "joint", "probability": 0.93},
-                {"element": "contact", "probability": 0.05},
-                {"element": "sensor.joint_angle", "probability": 0.02},
-            ],
-            "regimes": [
-                {"coordinate": "joint_velocity", "range": [-0.05, 0.05], "share": 0.7, "p_value": 1e-6},
-                {"coordinate": "time", "range": [8.0, 12.0], "share": 0.31, "p_value": np.float64(0.4)},
-            ],
-        },
+        where=WHERE,
         effects=findings(),
         sets=(
             {"effects": ["joint:stribeck"], "probability": 0.93},
