@@ -10,7 +10,6 @@ import pytest
 
 from tendonlab.diagnose.result import Diagnosis, EffectFinding, Overlay, SideTable, WhereMap
 
-
 WHERE = {
     "signals": [{"signal": "joint_angle", "share": 0.8}, {"signal": "motor_angle", "share": 0.2}],
     "elements": [
