@@ -24,8 +24,8 @@ class Recorder {
       delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
   template <class Inputs>
-  void operator()(const Step<Y>& s, double start, double length, double taken, const Frame<System, T>& frame,
-                  const Inputs& in) {
+  [[gnu::flatten]] void operator()(const Step<Y>& s, double start, double length, double taken,
+                                   const Frame<System, T>& frame, const Inputs& in) {
     const double reached = start + taken + 1e-12 * (1.0 + std::fabs(start)), per_length = 1.0 / length;
     if (!late) {
       for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
