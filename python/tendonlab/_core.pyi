@@ -29,6 +29,7 @@ class Laws(ModuleType):
 
 actuation: Laws
 friction: Laws
+loading: Laws
 sensing: Laws
 transmission: Laws
 

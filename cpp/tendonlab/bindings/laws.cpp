@@ -7,6 +7,7 @@
 #include "tendonlab/bindings/words.hpp"
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/friction/all.hpp"
+#include "tendonlab/loading/all.hpp"
 #include "tendonlab/sensing/all.hpp"
 #include "tendonlab/transmission/all.hpp"
 
@@ -270,6 +271,7 @@ void bind_laws(py::module_& module) {
   py::list registered;
   bind_group<friction::All>(module, "friction", "Friction laws.", registered);
   bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
+  bind_group<loading::All>(module, "loading", "Laws of what acts on the joint from outside.", registered);
   bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
   module.def(

@@ -1,5 +1,5 @@
 #pragma once
-// Actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are told
+// Load, actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are told
 // apart, since only whoever holds the signal's past can apply them.
 #include "tendonlab/core/law.hpp"
 

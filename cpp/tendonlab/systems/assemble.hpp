@@ -1,6 +1,6 @@
 #pragma once
-// One order for everything a system is made of: its own parameters, its slots, its actuation, its sensors. Whoever
-// describes, fills or seeds a system walks through it here.
+// One order for everything a system is made of: its own parameters, its slots, its load, its actuation, its sensors.
+// Whoever describes, fills or seeds a system walks through it here.
 #include <string>
 
 #include "tendonlab/systems/system.hpp"
@@ -12,6 +12,7 @@ void for_each_place(System& system, F&& f) {
   std::size_t i = 0;
   std::apply([&](auto&... slot) { (f(std::string(System::ports[i++].element), slot.laws, slot.active), ...); },
              system.slot);
+  f(std::string("load"), system.load.laws, system.load.active);
   f(std::string("actuation"), system.actuation.laws, system.actuation.active);
   for (std::size_t c = 0; c < System::outputs.size(); ++c)
     f("sensor." + std::string(System::outputs[c].name), system.sensor[c].laws, system.sensor[c].active);

@@ -20,6 +20,7 @@ struct RigidJoint {
   static constexpr bool plain_names = true;  ///< parameters of the nominal effects carry no element in front
 
   std::tuple<Slot<T, friction::All>> slot;
+  Chain<T, loading::All> load;
   Chain<T, actuation::All> actuation;
   std::array<Chain<T, sensing::All>, 2> sensor;
   T inertia, gravity_torque, torque_constant;
@@ -45,7 +46,7 @@ struct RigidJoint {
   Coupling<S, 1, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
     Coupling<S, 1, 1> c;
     const S motor = actuation.apply(S(torque_constant * in.command(at)));
-    const S gravity = gravity_torque * sin(at.position[0]), known = in.template input<1>(at.time);
+    const S gravity = gravity_torque * sin(at.position[0]), known = load.apply(in.template input<1>(at.time));
     c.port[0].velocity = at.velocity[0];
     c.port[0].position = at.position[0];
     c.port[0].load = 0.5 * (motor + gravity - known);  // mean of what the motor delivers and the load takes

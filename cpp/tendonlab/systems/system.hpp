@@ -6,6 +6,7 @@
 #include "tendonlab/core/chain.hpp"
 #include "tendonlab/core/slot.hpp"
 #include "tendonlab/friction/all.hpp"
+#include "tendonlab/loading/all.hpp"
 #include "tendonlab/sensing/all.hpp"
 #include "tendonlab/transmission/all.hpp"
 

@@ -29,6 +29,7 @@ struct TwoInertia {
 
   using Friction = Slot<T, friction::All>;
   std::tuple<Friction, Friction, Slot<T, Seeing<sees_load, friction::All>>, Slot<T, transmission::All>> slot;
+  Chain<T, loading::All> load;
   Chain<T, actuation::All> actuation;
   std::array<Chain<T, sensing::All>, 3> sensor;
   T motor_inertia, joint_inertia, gear_ratio, gravity_torque;
@@ -58,7 +59,7 @@ struct TwoInertia {
   Coupling<S, 4, 2> couple(const Motion<S, 2>& at, const Modes& mode, const Inputs& in) const {
     Coupling<S, 4, 2> c;
     const S torque = actuation.apply(S(in.command(at)));
-    const S gravity = gravity_torque * sin(at.position[1]), known = in.template input<1>(at.time);
+    const S gravity = gravity_torque * sin(at.position[1]), known = load.apply(in.template input<1>(at.time));
     auto& pull = c.port[cable];
     pull.position = lever[cable][0] * at.position[0] - at.position[1];
     pull.velocity = lever[cable][0] * at.velocity[0] - at.velocity[1];
