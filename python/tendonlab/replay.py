@@ -53,6 +53,12 @@ class Prepared:
     position_scale: float
     velocity_scale: float
 
+    @property
+    def initial_mean(self) -> np.ndarray:
+        """Means of those parts of the initial state."""
+        start = {"position": self.core.position, "velocity": self.core.velocity}
+        return np.array([start[of][axis] for of, axis in self.initial])
+
 
 def choose(dataset: Dataset, system: System) -> Replay:
     """Free run with the known controller; else injection at a bandwidth half of the one that holds 95 % of the measured

@@ -13,7 +13,7 @@ struct Presliding {
   static constexpr std::string_view name = "presliding", source = "S4 eq. 27",
                                     equation = "(1 - p) g sgn(v) + p (sigma_0 z + sigma_1 z'), z' = v - sigma_0 |v| z / g",
                                     summary = "presliding: a bristle replaces the jump of dry friction at reversal";
-  static constexpr unsigned roles = role::memory, sees = sees_velocity;
+  static constexpr unsigned roles = role::memory | role::refines, sees = sees_velocity;
   T stiffness, damping, share;
 
   static constexpr auto parameters() {

@@ -12,7 +12,7 @@ template <class T>
 struct Stribeck {
   static constexpr std::string_view name = "stribeck", source = "S4 eq. 27", equation = "F_e exp(-(v/v_s)^2) sgn(v)",
                                     summary = "Stribeck friction: extra resistance at low speed";
-  static constexpr unsigned roles = role::level, sees = sees_velocity;
+  static constexpr unsigned roles = role::level | role::refines, sees = sees_velocity;
   T excess;
   Divisor<T> falloff;
 

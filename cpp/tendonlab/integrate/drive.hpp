@@ -77,7 +77,7 @@ class Drive {
     const auto look = [&](const Signal& s, int i, double by) {
       if (s.holds) next = std::min(next, s.next_change(i) + by);
     };
-    look(from.inputs[0], piece[0], shift);
+    if (logged()) look(from.inputs[0], piece[0], shift);
     for (std::size_t k = 1; k < from.inputs.size(); ++k) look(from.inputs[k], piece[k], 0.0);
     look(from.loop.disturbance, disturbance_piece, shift);
     look(from.loop.reference, reference_piece, shift);
@@ -92,7 +92,7 @@ class Drive {
   }
   /// The same for whatever makes the command: its jumps move with its delay.
   void pass_command(double now) {
-    move(from.inputs[0], piece[0], shift, now);
+    if (logged()) move(from.inputs[0], piece[0], shift, now);
     move(from.loop.disturbance, disturbance_piece, shift, now);
     move(from.loop.reference, reference_piece, shift, now);
     while (!pending.empty() && pending.front().due <= now) {
@@ -110,8 +110,7 @@ class Drive {
     T y = at.position[axis], rate = at.velocity[axis];
     if (is_late(sensor_late)) std::tie(y, rate) = past.reading(T(now - sensor_late), y, rate, T(now));
     y = y + bias;
-    int unshifted = loop.reference.holds ? loop.reference.locate(now, reference_piece) : reference_piece;
-    const T r = loop.reference.value(T(now), unshifted);
+    const T r = at_tick(loop.reference, ticked_reference, now);
     const bool first = tick == 0;
     if (first) last_reading = y, last_reference = r;
     T u = loop.proportional * (r - y) +
@@ -119,8 +118,7 @@ class Drive {
     if (plain(u) > loop.limit) u = T(loop.limit);
     if (plain(u) < -loop.limit) u = T(-loop.limit);
     last_reading = y, last_reference = r;
-    int at_tick = loop.disturbance.holds ? loop.disturbance.locate(now, disturbance_piece) : disturbance_piece;
-    u = u + loop.disturbance.value(T(now), at_tick);
+    u = u + at_tick(loop.disturbance, ticked_disturbance, now);
     if (first) held = u;  // before the record began the command was what it is at its first sample
     pending.push_back({tick_time(tick) + shift, u});
     ++tick;
@@ -166,9 +164,16 @@ class Drive {
   bool needs_past() const {
     return from.loop.kind == Loop::Kind::controller && (is_late(sensor_late) || (is_late(late) && !samples()));
   }
+  /// Does the logged command drive the system, rather than a controller?
+  bool logged() const { return from.loop.kind != Loop::Kind::controller; }
   double clipped(double u) const { return u > from.loop.limit ? 1.0 : u < -from.loop.limit ? -1.0 : 0.0; }
   static void move(const Signal& s, int& i, double by, double now) {
     while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
+  }
+  /// What the controller's clock sees of a signal: no delay has moved it.
+  static T at_tick(const Signal& s, int& i, double now) {
+    if (s.holds && !s.empty()) i = s.locate(now, i);
+    return s.value(T(now), i);
   }
   double tick_time(long k) const { return from.time.front() + static_cast<double>(k) * from.loop.sample_time; }
 
@@ -177,6 +182,7 @@ class Drive {
   std::deque<Command> pending;
   std::deque<double> echoes;  ///< when kinks of the past motion reach the loop
   long tick = 0;
+  int ticked_reference = 0, ticked_disturbance = 0;
   T held{}, last_reading{}, last_reference{};
 };
 }  // namespace tendonlab::integrate

@@ -41,10 +41,16 @@ struct Signal {
   }
   /// When a held value next changes after piece `i`; infinity if it never does.
   double next_change(int i) const {
-    if (!holds) return inf_time;
-    for (std::size_t k = static_cast<std::size_t>(i) + 1; k < knots.size(); ++k)
-      if (coefficients[k][0] != coefficients[k - 1][0]) return knots[k];
-    return inf_time;
+    return holds && i + 1 < pieces() ? knots[static_cast<std::size_t>(i) + 1] : inf_time;
+  }
+  /// Joins held pieces of equal value, so that the stepper lands where something happens and nowhere else.
+  void join() {
+    if (!holds || empty()) return;
+    std::size_t last = 0;
+    for (std::size_t k = 1; k < knots.size(); ++k)
+      if (coefficients[k][0] != coefficients[last][0])
+        ++last, knots[last] = knots[k], coefficients[last] = coefficients[k];
+    knots.resize(last + 1), coefficients.resize(last + 1);
   }
   static constexpr double inf_time = 1e300;
 };

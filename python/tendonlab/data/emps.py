@@ -22,6 +22,8 @@ description = """
 EMPS, the electro-mechanical positioning system: DC motor, ball screw and carriage on a rail under cascaded position
 and velocity control; 1 kHz, 24.84 s a record. Experiment "pulses" repeats the motion of "estimation" with disturbance
 pulses of 5 V added to the controller's output; motor_torque is the total drive voltage and contains them already.
+The logged voltage follows from the logged position by its backward difference over 1 ms (0.036 V rms are left; 0.072 V
+by a central one): the controller is sampled at 1 kHz.
 Licence: open benchmark; the files are copies in the Apache-2.0 repository forgi86/sysid-neural-continuous on GitHub.
 Citation: A. Janot, M. Gautier, M. Brunot, "Data set and reference models of EMPS", Workshop on Nonlinear System
 Identification Benchmarks, Eindhoven, 2019.
@@ -47,6 +49,7 @@ measured = "joint_angle"
 reference = "reference_angle"
 disturbance = "disturbance_voltage"
 limit = 10.0
+sample_time = 0.001
 
 [signals.motor_torque]
 column = "vir"

@@ -82,9 +82,9 @@ def make_case(dataset: Dataset, system: System | None = None) -> Case:
     prepared = tuple(prepare(e, system, replay) for e in dataset.experiments)
     noise = np.array([_noise(dataset, prepared, c) for c in range(len(system.info.outputs))])
     found = scales(system, prepared)
-    settings = _settings(system, prepared, noise, 1e-4)
+    settings = _settings(system, prepared, 1e-4)
     case = Case(dataset, system, replay, tuple(dataset.experiments), prepared, noise, found, settings)
-    return replace(case, settings=_fine_enough(case))
+    return replace(case, settings=fine_enough(case, case.noise))
 
 
 def _noise(dataset: Dataset, prepared: Sequence[Prepared], c: int) -> float:
@@ -99,7 +99,7 @@ def _noise(dataset: Dataset, prepared: Sequence[Prepared], c: int) -> float:
     return max(float(np.hypot(found, coarse)) if spec.noise_sd is None else found, coarse, smallest, 1e-300)
 
 
-def _settings(system: System, prepared: Sequence[Prepared], noise: np.ndarray, tolerance: float) -> _core.Settings:
+def _settings(system: System, prepared: Sequence[Prepared], tolerance: float) -> _core.Settings:
     longest = max(e.measured.shape[1] for e in prepared)
     return _core.Settings(
         max_attempts=ATTEMPTS * longest + 10_000,
@@ -109,23 +109,20 @@ def _settings(system: System, prepared: Sequence[Prepared], noise: np.ndarray, t
     )
 
 
-def _fine_enough(case: Case) -> _core.Settings:
-    """The loosest tolerance at which the simulator's own error stays below a tenth of the sensors' noise."""
-    sample = case.train[: 3]
+def fine_enough(case: Case, noise: np.ndarray) -> _core.Settings:
+    """The loosest tolerance at which the simulator's own error stays below a tenth of `noise`, of each output."""
+    sample = case.train[:3]
     kept = case.measured
 
     def run(tolerance: float) -> list[np.ndarray]:
-        settings = _settings(case.system, case.prepared, case.noise, tolerance)
-        return [
-            _core.simulate(case.system.kind, *case.at(i, case.system), case.prepared[i].core, [], settings)["outputs"][kept]
-            for i in sample
-        ]
+        settings = _settings(case.system, case.prepared, tolerance)
+        ready = [(case.at(i, case.system), case.prepared[i].core) for i in sample]
+        return [_core.simulate(case.system.kind, *at, core, [], settings)["outputs"][kept] for at, core in ready]
+
+    def error(outputs: list[np.ndarray]) -> float:
+        rms = [np.sqrt(np.mean(np.square(a - b), axis=1)) for a, b in zip(outputs, best, strict=True)]
+        return float(np.max(np.array(rms) / noise[kept]))
 
     best = run(TOLERANCES[-1] / 100)
-    for tolerance in TOLERANCES:
-        error = max(
-            float(np.max(np.sqrt(np.mean((a - b) ** 2, axis=1)) / case.noise[kept])) for a, b in zip(run(tolerance), best, strict=True)
-        )
-        if error < NUMERICS_SHARE:
-            break
-    return _settings(case.system, case.prepared, case.noise, tolerance)
+    enough = (t for t in TOLERANCES if error(run(t)) < NUMERICS_SHARE)
+    return _settings(case.system, case.prepared, next(enough, TOLERANCES[-1]))

@@ -21,11 +21,9 @@ from tendonlab.diagnose.search import Search, Trial
 from tendonlab.diagnose.verdict import Verdict, decide
 
 
-def compose(
-    fitter: Fitter, floor: Floor, nominal: Fitted, found: Search, *, seed: int, seconds: Callable[[], float]
-) -> Diagnosis:
+def compose(fitter: Fitter, nominal: Fitted, found: Search, *, seed: int, seconds: Callable[[], float]) -> Diagnosis:
     """The Diagnosis of a finished search."""
-    case = fitter.case
+    case, floor = fitter.case, fitter.floor
     judged = case.test or case.train
     stages = {
         "nominal": heldout.replay(case, case.system, judged),

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from tendonlab import _core
 from tendonlab.diagnose.case import Case
-from tendonlab.diagnose.floor import kept_samples
+from tendonlab.diagnose.floor import Floor, kept_samples
 from tendonlab.priors import Free, free_parameters
 from tendonlab.system import System
 
@@ -41,6 +42,7 @@ class Fitted:
     at_bound: tuple[bool, ...]
     converged: bool
     message: str
+    share: float = 1.0  # of the rows that count as independent
 
     @cached_property
     def precision(self) -> np.ndarray:
@@ -51,7 +53,7 @@ class Fitted:
     def evidence(self) -> float:
         """Laplace log evidence, up to what all models share."""
         away = (self.x - np.array([f.mean for f in self.free])) ** 2 * self._prior
-        fit = sum(float(b.residual @ b.residual) for b in self.blocks)
+        fit = self.share * sum(float(b.residual @ b.residual) for b in self.blocks)
         sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
         _, volume = np.linalg.slogdet(np.eye(len(sd)) + sd[:, None] * self._information * sd)
         return -0.5 * (fit + float(np.sum(away)) + volume + self.state_volume)
@@ -63,10 +65,11 @@ class Fitted:
         moving = ~np.array(self.at_bound, dtype=bool)
         for b in self.blocks:
             j = b.jacobian[:, moving]
-            without = self.precision[np.ix_(moving, moving)] - j.T @ j
-            step = np.linalg.solve(without + 1e-9 * np.diag(np.diag(self.precision)[moving]), j.T @ b.residual)
+            without = self.precision[np.ix_(moving, moving)] - self.share * j.T @ j
+            pull = self.share * j.T @ b.residual
+            step = np.linalg.solve(without + 1e-9 * np.diag(np.diag(self.precision)[moving]), pull)
             predicted = b.residual + j @ step
-            scores.append(-0.5 * float(predicted @ predicted))
+            scores.append(-0.5 * self.share * float(predicted @ predicted))
         return np.array(scores)
 
     @cached_property
@@ -79,15 +82,14 @@ class Fitted:
     def covariance(self) -> np.ndarray:
         """Of the coordinates: a sandwich over blocks, never less than the prior and the noise give."""
         plain = np.linalg.inv(self.precision)
-        pieces = np.array([b.jacobian.T @ b.residual for b in self.blocks])
-        meat = self._information + np.diag(self._prior)
-        if len(pieces) > 1:
-            meat = np.maximum(1.0, self.mean_square) * self._information + np.diag(self._prior)
-            clustered = plain @ (pieces.T @ pieces * len(pieces) / (len(pieces) - 1) + np.diag(self._prior)) @ plain
-            usual = plain @ meat @ plain
-            grow = np.sqrt(np.maximum(1.0, np.diag(clustered) / np.diag(usual)))
-            return grow[:, None] * usual * grow
-        return plain @ meat @ plain
+        meat = max(1.0, self.mean_square) * self._information + np.diag(self._prior)
+        usual = np.asarray(plain @ meat @ plain)
+        if len(self.blocks) < 2:
+            return usual
+        pieces = self.share * np.array([b.jacobian.T @ b.residual for b in self.blocks])
+        between = pieces.T @ pieces * len(pieces) / (len(pieces) - 1) + np.diag(self._prior)
+        grow = np.sqrt(np.maximum(1.0, np.diag(plain @ between @ plain) / np.diag(usual)))
+        return np.asarray(grow[:, None] * usual * grow)
 
     def value(self, name: str) -> tuple[float, tuple[float, float]]:
         """Fitted value of a free parameter and its 95 % interval."""
@@ -103,7 +105,7 @@ class Fitted:
     @cached_property
     def _information(self) -> np.ndarray:
         width = len(self.free)
-        return sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width)))
+        return self.share * sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width)))
 
 
 @dataclass(frozen=True)
@@ -112,14 +114,18 @@ class Fitter:
 
     case: Case
     whitening: Sequence[_core.Whitening]
-    ar: Sequence[Sequence[float]]
-    sd: Sequence[float]
+    floor: Floor
     cancel: _core.Cancel
 
     def fit(
-        self, system: System, *, added: Sequence[str] = (), initial: Sequence[Sequence[float]] = (), max_iterations: int = 25,
+        self,
+        system: System,
+        *,
+        added: Sequence[str] = (),
+        initial: Sequence[Sequence[float]] = (),
+        max_iterations: int = 25,
         solve: bool = True,
-    ) -> Fitted:  # fmt: skip
+    ) -> Fitted:
         """Fit `system` from its own values, with priors about the nominal ones. `solve` False: only linearise there."""
         case = self.case
         rows = free_parameters(system, case.dataset.parameters, case.scales, added=added)
@@ -130,31 +136,42 @@ class Fitter:
         )  # fmt: skip
         start = [list(s) for s in initial]
         if solve:
-            found = _core.fit(*arguments, initial=start, max_iterations=max_iterations, tolerance=1e-6, cancel=self.cancel)
+            limits = {"max_iterations": max_iterations, "tolerance": 1e-6}
+            found = _core.fit(*arguments, initial=start, cancel=self.cancel, **limits)
         else:
             found = _core.linearise(*arguments, initial=start)
         fitted = system.with_parameters({f.name: found["values"][f.index] for f in free})
         return self._summarise(fitted, tuple(added), tuple(free), found)
 
-    def _summarise(self, system: System, added: tuple[str, ...], free: tuple[Free, ...], found: dict) -> Fitted:
+    def _summarise(
+        self, system: System, added: tuple[str, ...], free: tuple[Free, ...], found: Mapping[str, Any]
+    ) -> Fitted:
         blocks: list[Score] = []
         states = []
         volume = 0.0
         for t, i in enumerate(self.case.train):
             ready = self.case.prepared[i]
             k = found["jacobian_initial"][t]
-            mean = [(ready.core.position if of == "position" else ready.core.velocity)[axis] for of, axis in ready.initial]
-            z = (np.array(found["initial"][t]) - np.array(mean)) / np.array(ready.initial_sd) if mean else np.zeros(0)
+            z = (np.array(found["initial"][t]) - ready.initial_mean) / np.array(ready.initial_sd)
             states.append((k, z))
             volume += float(np.linalg.slogdet(np.eye(k.shape[1]) + k.T @ k)[1])
             rows = self.rows(states[t], t, found["residuals"][t])
             slopes = self.rows((k, np.zeros(len(z))), t, found["jacobian"][t])
             blocks += [Score(r, j) for r, j in zip(rows, slopes, strict=True)]
         return Fitted(
-            added=added, system=system, free=free, x=np.array(found["x"]), initial=tuple(tuple(s) for s in found["initial"]),
-            blocks=tuple(blocks), states=tuple(states), state_volume=volume, at_bound=tuple(found["at_bound"]), converged=found["converged"],
+            added=added,
+            system=system,
+            free=free,
+            x=np.array(found["x"]),
+            initial=tuple(tuple(s) for s in found["initial"]),
+            blocks=tuple(blocks),
+            states=tuple(states),
+            state_volume=volume,
+            at_bound=tuple(found["at_bound"]),
+            converged=found["converged"],
             message=found["message"],
-        )  # fmt: skip
+            share=self.floor.share,
+        )
 
     def rows(self, state: tuple[np.ndarray, np.ndarray], t: int, of: np.ndarray) -> list[np.ndarray]:
         """Whitened rows (residuals or slopes) of training experiment t with its initial state marginalised, in blocks:
@@ -164,16 +181,16 @@ class Fitter:
         whole = marginalised(k, of - (offset if of.ndim == 1 else offset[:, None]))
         if len(self.case.train) >= FEW:
             return [whole]
-        index = block_index(self.case, self.case.train[t], self.ar, self.sd)
+        index = block_index(self.case, self.case.train[t], self.floor)
         return [whole[index == b] for b in range(int(index.max()) + 1)]
 
 
-def block_index(case: Case, i: int, ar: Sequence[Sequence[float]], sd: Sequence[float]) -> np.ndarray:
+def block_index(case: Case, i: int, floor: Floor) -> np.ndarray:
     """Which contiguous block of at least 2 s each whitened row of experiment i belongs to."""
     time = np.asarray(case.experiments[i].time)
     num = max(1, int((time[-1] - time[0]) / BLOCK))
     of_sample = np.minimum((num * (time - time[0]) / (time[-1] - time[0])).astype(int), num - 1)
-    kept = kept_samples(ar, sd, case.prepared[i].measured)
+    kept = kept_samples(floor, case.prepared[i].measured)
     return np.concatenate([of_sample[k] for k in kept])
 
 

@@ -1,7 +1,9 @@
 """The noise floor: what repeats of an experiment do not repeat (DIAGNOSIS section 2, steps 3 and 4).
 
 Repeats are compared through the residuals of the same model. What a slightly different friction from run to run explains
-is a random effect of its own; the rest is coloured noise, whitened by an autoregression."""
+is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats nothing tells
+noise from what the model lacks: then all of a residual counts as noise, with as few independent samples as its memory
+leaves, and is judged anew after each effect that was found."""
 
 from __future__ import annotations
 
@@ -12,7 +14,6 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.diagnose.case import Case
-from tendonlab.priors import Free
 from tendonlab.system import System
 
 AR_ORDER = 6
@@ -23,13 +24,15 @@ RUN_TO_RUN_UNKNOWN = 0.02  # assumed in the plain floor where nothing repeats
 @dataclass(frozen=True)
 class Floor:
     """`rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and innovation
-    sd of each output. `tau`: relative sd of friction from run to run. `repeated`: whether repeats say so."""
+    sd of each output. `tau`: relative sd of friction from run to run. `repeated`: whether repeats say so. `share` of the
+    whitened samples that count as independent: decisions weigh them by it, fits as they are."""
 
     rms: np.ndarray
     ar: list[list[float]]
     sd: list[float]
     tau: float
     repeated: bool
+    share: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -42,10 +45,10 @@ class Sensitivities:
     initial: np.ndarray
 
 
-def white(case: Case) -> list[_core.Whitening]:
-    """Whitening by the sensors' white noise alone: for the first fit, before the floor is known."""
+def white(case: Case) -> Floor:
+    """The sensors' white noise alone: for the first fit, before the floor is known."""
     sd = [float(s) if np.isfinite(s) else 0.0 for s in case.noise]
-    return [_core.Whitening([[] for _ in sd], sd, e.measured) for e in case.prepared]
+    return Floor(case.noise, [[] for _ in sd], sd, 0.0, repeated=False)
 
 
 def friction_groups(system: System) -> list[list[int]]:
@@ -92,63 +95,81 @@ def started(case: Case, i: int, initial: Sequence[float]) -> _core.Experiment:
 
 
 def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
-    """The floor from repeats; where nothing repeats, from the residuals of the experiments `fitted` themselves, which
-    can only overstate the noise."""
+    """The floor from repeats; where nothing repeats, from the residuals of the experiments `fitted` themselves."""
     groups: dict[str, list[int]] = {}
     for i, experiment in enumerate(case.experiments):
         if experiment.repeat is not None:
             groups.setdefault(experiment.repeat, []).append(i)
     repeats = [g for g in groups.values() if len(g) > 1 and len({len(case.prepared[i].measured[0]) for i in g}) == 1]
-    differences = [
-        (seen[i].residual - np.mean([seen[j].residual for j in g], axis=0)) * np.sqrt(len(g) / (len(g) - 1)) for g in repeats for i in g
-    ]
+    return _from_repeats(case, seen, repeats) if repeats else _without_repeats(case, seen, fitted)
+
+
+def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[Sequence[int]]) -> Floor:
     members = [i for g in repeats for i in g]
-    repeated = bool(members)
-    if not repeated:
-        members = list(fitted)
-        differences = [seen[i].residual for i in members]
-    cleaned, coefficients = zip(*(_clean(case, d, seen[i]) for i, d in zip(members, differences, strict=True)), strict=True)
-    tau = _run_to_run([c for c in coefficients if repeated])
-    rms, ar, sd = [], [], []
-    for c in range(len(case.noise)):
-        if not np.isfinite(case.noise[c]):
-            rms.append(np.nan), ar.append([]), sd.append(0.0)
-            continue
-        model = _autoregression([d[c] for d in cleaned])
-        ar.append(model[0]), sd.append(max(model[1], 0.3 * float(case.noise[c])))
-        rms.append(_rms([d[c] for d in differences]) if repeated else _assumed(case, seen, c))
-    return Floor(np.array(rms), ar, sd, tau, repeated)
+    differences = [
+        (seen[i].residual - np.mean([seen[j].residual for j in g], axis=0)) * np.sqrt(len(g) / (len(g) - 1))
+        for g in repeats
+        for i in g
+    ]
+    pairs = [_clean(case, d, seen[i]) for i, d in zip(members, differences, strict=True)]
+    ar: list[list[float]] = [[] for _ in case.noise]
+    rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
+    for c in case.measured:
+        ar[c], innovation = _autoregression([d[c] for d, _ in pairs])
+        sd[c] = max(innovation, 0.3 * float(case.noise[c]))
+        rms[c] = _rms([d[c] for d in differences])
+    return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
 
 
-def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities]) -> list[_core.Whitening]:
-    """Whitening of every experiment by the autoregression and the run-to-run friction as a random effect."""
-    made = []
-    for ready, s in zip(case.prepared, seen, strict=True):
-        plain = _core.Whitening(floor.ar, floor.sd, ready.measured)
-        directions = plain.apply_many(s.friction) if len(s.friction) else None
-        made.append(_core.Whitening(floor.ar, floor.sd, ready.measured, directions, [floor.tau] * len(s.friction)))
-    return made
+def _without_repeats(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
+    rms, sd = np.full(len(case.noise), np.nan), np.zeros(len(case.noise))
+    memory = np.ones(len(case.noise))
+    for c in case.measured:
+        records = [seen[i].residual[c] for i in fitted]
+        rms[c] = _assumed(case, seen, c)
+        sd[c] = max(_rms(records), float(case.noise[c]))
+        memory[c] = np.mean([integrated_time(r[np.isfinite(r)]) for r in records])
+    mean = float(np.mean(memory[case.measured]))
+    weighed = sd * np.sqrt(memory / mean)  # a channel that varies more slowly says less
+    return Floor(rms, [[] for _ in sd], weighed.tolist(), RUN_TO_RUN, repeated=False, share=1.0 / mean)
 
 
-def kept_samples(whitening_ar: Sequence[Sequence[float]], sd: Sequence[float], measured: np.ndarray) -> list[np.ndarray]:
+def integrated_time(record: np.ndarray) -> float:
+    """Samples that count as one independent one: 1 + 2 sum of the autocorrelation up to its first zero."""
+    from scipy.signal import correlate
+
+    if not np.any(record):
+        return 1.0
+    lagged = correlate(record, record, mode="full", method="fft")[len(record) - 1 :]
+    ended = np.flatnonzero(lagged <= 0)
+    return float(1.0 + 2.0 * np.sum(lagged[1 : ended[0] if len(ended) else None]) / lagged[0])
+
+
+def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> list[_core.Whitening]:
+    """Whitening of every experiment by the autoregression and, where `seen`, run-to-run friction as a random effect."""
+    plain = [_core.Whitening(floor.ar, floor.sd, ready.measured) for ready in case.prepared]
+    if not seen or not len(seen[0].friction):
+        return plain
+    return [
+        _core.Whitening(floor.ar, floor.sd, ready.measured, by_noise.apply_many(s.friction), [floor.tau] * len(s.friction))
+        for ready, by_noise, s in zip(case.prepared, plain, seen, strict=True)
+    ]
+
+
+def kept_samples(floor: Floor, measured: np.ndarray) -> list[np.ndarray]:
     """Samples that the rows of a whitening stand for, channel by channel."""
     kept = []
     for c, row in enumerate(measured):
-        if not sd[c] > 0:
+        if not floor.sd[c] > 0:
             kept.append(np.zeros(0, dtype=int))
             continue
         there = np.isfinite(row)
         whole = there.copy()
-        for lag in range(1, len(whitening_ar[c]) + 1):
+        for lag in range(1, len(floor.ar[c]) + 1):
             whole[lag:] &= there[:-lag]
             whole[:lag] = False
         kept.append(np.flatnonzero(whole))
     return kept
-
-
-def free_start(free: Sequence[Free]) -> list[_core.Free]:
-    """Free parameters for the compiled fit."""
-    return [f.core() for f in free]
 
 
 def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.ndarray, np.ndarray]:
@@ -184,8 +205,8 @@ def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
         lags += [float(x[k:] @ x[: len(x) - k]) for k in range(AR_ORDER + 1)]
     lags /= count
     lags[0] *= 1 + 1e-9
-    a = solve_toeplitz(lags[:-1], lags[1:])
-    return [float(v) for v in a], float(np.sqrt(max(lags[0] - a @ lags[1:], 1e-300)))
+    a = np.asarray(solve_toeplitz(lags[:-1], lags[1:]))
+    return a.tolist(), float(np.sqrt(max(lags[0] - a @ lags[1:], 1e-300)))
 
 
 def _assumed(case: Case, seen: Sequence[Sensitivities], c: int) -> float:

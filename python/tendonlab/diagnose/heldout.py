@@ -45,8 +45,8 @@ def initial_state(case: Case, system: System, i: int) -> _core.Experiment:
     num = max(8, int(np.searchsorted(time - time[0], START)))
     sd = np.asarray(ready.initial_sd)
     weight = case.noise[case.measured]
-    value = np.array([(ready.core.position if of == "position" else ready.core.velocity)[axis] for of, axis in ready.initial])
-    mean = value.copy()
+    mean = ready.initial_mean
+    value = mean.copy()
     for _ in range(3):
         core = started(case, i, value.tolist()).until(num)
         run = _core.simulate(system.kind, *case.at(i, system), core, list(ready.initial), case.settings)
@@ -112,6 +112,6 @@ def predictive_gain(
     for k, i in enumerate(experiments):
         a = whitening[i].residual(before.outputs[k])
         b = whitening[i].residual(after.outputs[k])
-        gains += list(0.5 * np.bincount(block_index(case, i, floor.ar, floor.sd), a**2 - b**2))
+        gains += list(0.5 * floor.share * np.bincount(block_index(case, i, floor), a**2 - b**2))
     spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else abs(float(np.sum(gains)))
     return {"mean": float(np.sum(gains)), "se": spread}

@@ -7,13 +7,15 @@ import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.diagnose import floor as noise
-from tendonlab.diagnose.case import Case, make_case
+from tendonlab.diagnose.case import Case, fine_enough, make_case
 from tendonlab.diagnose.compose import compose
 from tendonlab.diagnose.fits import Fitted, Fitter
 from tendonlab.diagnose.floor import Floor, Sensitivities
@@ -43,42 +45,51 @@ def diagnose(
     names = _library(dataset, library)
     case = make_case(dataset, system)
     with _workers() as (pool, cancel):
-        null, floor, whitening = _prepare(case, pool, cancel)
-        fitter = Fitter(case, whitening, floor.ar, floor.sd, cancel)
-        nominal = fitter.fit(case.system, initial=null.initial, solve=False)
-        null = fitter.fit(null.system, initial=null.initial)
-        found = search(fitter, null, pool=pool, progress=progress, library=names)
+        first = _fitter(case, noise.white(case), cancel).fit(case.system)
+        seen = _sensitivities(case, first, pool)
+        floor = noise.estimate(case, seen, case.train)
+        case = replace(case, settings=fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd))))
+        fitter = _fitter(case, floor, cancel, seen)
+        nominal = fitter.fit(case.system, initial=first.initial, solve=False)
+        null = fitter.fit(first.system, initial=first.initial)
+        renew = partial(_renewed, pool=pool)
+        found = search(fitter, null, pool=pool, renew=renew, progress=progress, library=names)
         log.info("selected %s", found.selected)
-        return compose(fitter, floor, nominal, found, seed=seed, seconds=lambda: time.monotonic() - began)
+        return compose(fitter, nominal, found, seed=seed, seconds=lambda: time.monotonic() - began)
 
 
-def _prepare(case: Case, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> tuple[Fitted, Floor, list[_core.Whitening]]:
-    """A first refit in white noise, and from its residuals the floor and the whitening that all models share."""
-    white = noise.white(case)
-    sd = [float(s) if np.isfinite(s) else 0.0 for s in case.noise]
-    first = Fitter(case, white, [[] for _ in sd], sd, cancel).fit(case.system)
-    position = {i: t for t, i in enumerate(case.train)}
+def _fitter(case: Case, floor: Floor, cancel: _core.Cancel, seen: Sequence[Sensitivities] = ()) -> Fitter:
+    return Fitter(case, noise.whitenings(case, floor, seen), floor, cancel)
+
+
+def _renewed(fitter: Fitter, best: Fitted, *, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:
+    """The fitter and the best model so far for the search of a further effect. Repeats say what noise is once and for
+    all; without them, noise is what the best model leaves."""
+    if fitter.floor.repeated:
+        return fitter, best
+    case = fitter.case
+    seen = _sensitivities(case, best, pool)
+    now = noise.estimate(case, seen, case.train)
+    floor = replace(fitter.floor, sd=now.sd, share=now.share)
+    fitter = _fitter(case, floor, fitter.cancel, seen)
+    return fitter, fitter.fit(best.system, added=best.added, initial=best.initial)
+
+
+def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list[Sensitivities]:
+    initial = dict(zip(case.train, fitted.initial, strict=True))
 
     def seen(i: int) -> Sensitivities:
-        return noise.sensitivities(case, first.system, i, _initial(case, first, i, position))
+        start = initial.get(i, case.prepared[i].initial_mean.tolist())
+        return noise.sensitivities(case, fitted.system, i, start)
 
-    sensitivities = list(pool.map(seen, range(len(case.experiments))))
-    floor = noise.estimate(case, sensitivities, case.train)
-    return first, floor, noise.whitenings(case, floor, sensitivities)
-
-
-def _initial(case: Case, fitted: Fitted, i: int, position: dict[int, int]) -> Sequence[float]:
-    if i in position:
-        return fitted.initial[position[i]]
-    core = case.prepared[i].core
-    return [(core.position if of == "position" else core.velocity)[axis] for of, axis in case.prepared[i].initial]
+    return list(pool.map(seen, range(len(case.experiments))))
 
 
 def _library(dataset: Dataset, library: str | Sequence[str]) -> Sequence[str] | None:
     if library == "default":
         return None
     if isinstance(library, str):
-        raise ParameterError(f"library = {library!r}: expected 'default' or a list of effects such as ['joint:stribeck']")
+        raise ParameterError(f"library = {library!r}: expected 'default' or a list such as ['joint:stribeck']")
     info = dataset.system().info
     return [info.effect(name).name for name in library]
 
@@ -95,6 +106,3 @@ def _workers() -> Iterator[tuple[ThreadPoolExecutor, _core.Cancel]]:
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-

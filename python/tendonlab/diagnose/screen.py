@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from tendonlab.priors import AMPLITUDE_SD, start_of
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
+LEVEL, REFINES = 2, 32  # roles of laws, as the core numbers them
 INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
 
 
@@ -46,10 +48,11 @@ def candidates(case: Case, best: Fitted) -> list[str]:
 
 
 def _has_ground(effect: Effect, best: Fitted) -> bool:
-    """A bristle needs dry friction to take over."""
-    if not effect.roles & 16:
+    """What refines dry friction (a bristle, the Stribeck excess) needs dry friction of its element to refine."""
+    if not effect.roles & REFINES:
         return True
-    return any(e.name in best.system.effects and e.element == effect.element and e.roles & 2 for e in best.system.info.effects)
+    here = [e for e in best.system.info.effects if e.name in best.system.effects and e.element == effect.element]
+    return any(e.roles & LEVEL and not e.roles & REFINES for e in here)
 
 
 def screen(fitter: Fitter, best: Fitted, effect: str) -> Lead:
@@ -82,7 +85,13 @@ def screen(fitter: Fitter, best: Fitted, effect: str) -> Lead:
 
 
 def _score(
-    fitter: Fitter, best: Fitted, base: list[np.ndarray], effect: str, p: Parameter, shaped: dict[str, float], amplitude: float
+    fitter: Fitter,
+    best: Fitted,
+    base: list[np.ndarray],
+    effect: str,
+    p: Parameter,
+    shaped: dict[str, float],
+    amplitude: float,
 ) -> tuple[float, dict[str, float], float]:
     """Expected gain, the values to start a fit from, and the gain of a typical effect."""
     case = fitter.case
@@ -90,17 +99,26 @@ def _score(
     unit = 1.0 if p.purpose == "share" else scale
     values = {**shaped, p.name: amplitude * unit}
     moved = _whitened(fitter, best, values, effect=effect)
-    d = np.concatenate([(m - b) / amplitude for m, b in zip(moved, base, strict=True)])
-    r = np.concatenate(base)
-    j = np.concatenate([b.jacobian for b in best.blocks])
-    weight = np.linalg.solve(best.precision, j.T)
-    slope, curvature = float(d @ r - (d @ j) @ (weight @ r)), float(d @ d - (d @ j) @ (weight @ d))
-    curvature = max(curvature, 0.0)
+    directions = [(m - b) / amplitude for m, b in zip(moved, base, strict=True)]
+    dd, dr, jd, jr = (best.share * total for total in _products(best, directions, base))
+    hidden = np.linalg.solve(best.precision, jd)  # what the free parameters can imitate of it
+    slope, curvature = float(dr - hidden @ jr), max(float(dd - hidden @ jd), 0.0)
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
     at = min(max(at, p.lower / unit), p.upper / unit)
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
     start = p.typical if p.purpose == "share" else at * unit  # a share is held at its typical value in fits
     return gain, {**values, p.name: start}, 0.5 * curvature
+
+
+def _products(best: Fitted, directions: list[np.ndarray], base: list[np.ndarray]) -> tuple[Any, ...]:
+    """d'd, d'r, J'd and J'r over all blocks."""
+    rows = list(zip(directions, base, best.blocks, strict=True))
+    return (
+        sum(d @ d for d, _, _ in rows),
+        sum(d @ r for d, r, _ in rows),
+        sum(b.jacobian.T @ d for d, _, b in rows),
+        sum(b.jacobian.T @ r for _, r, b in rows),
+    )
 
 
 def _whitened(fitter: Fitter, best: Fitted, values: dict[str, float], *, effect: str | None) -> list[np.ndarray]:

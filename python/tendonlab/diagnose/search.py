@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -16,7 +16,6 @@ from tendonlab.errors import NumericalError, ParameterError
 NUM_REFIT, NUM_REFIT_AGAIN = 8, 4
 DETECT_EVIDENCE, DETECT_LEFT_OUT = 10.0, 3.0
 AGAIN_EVIDENCE, AGAIN_LEFT_OUT, AGAIN_SHARE = 30.0, 9.0, 0.01
-STEADY = 2.0  # standard errors over blocks by which a further effect must gain when left out
 MAX_EFFECTS = 3
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
@@ -33,6 +32,21 @@ class Trial:
     evidence_gain: float
     left_out_gain: float
     left_out_se: float
+
+
+@dataclass(frozen=True)
+class Bar:
+    """What an effect must gain to be established: evidence, and log score of left-out experiments, the latter also by
+    `steady` standard errors."""
+
+    evidence: float
+    left_out: float
+    steady: float
+
+    def passed(self, by: Trial) -> bool:
+        """Whether `by` is established."""
+        left_out = max(self.left_out, self.steady * by.left_out_se)
+        return by.evidence_gain > self.evidence and by.left_out_gain > left_out
 
 
 @dataclass(frozen=True)
@@ -60,8 +74,20 @@ class Search:
         return self.best.added
 
 
-def search(fitter: Fitter, null: Fitted, *, pool: ThreadPoolExecutor, progress: bool, library: Sequence[str] | None) -> Search:
-    """Add effects one at a time, as long as evidence and left-out experiments both ask for it."""
+Renew = Callable[[Fitter, Fitted], tuple[Fitter, Fitted]]
+
+
+def search(
+    fitter: Fitter,
+    null: Fitted,
+    *,
+    pool: ThreadPoolExecutor,
+    renew: Renew,
+    progress: bool,
+    library: Sequence[str] | None,
+) -> Search:
+    """Add effects one at a time, as long as evidence and left-out experiments both ask for it. `renew` gives the fitter
+    for the search beyond a model, and the model in its eyes."""
     best, rounds = null, list[Round]()
     while len(rounds) < MAX_EFFECTS:
         one = _round(fitter, best, rounds, pool=pool, progress=progress, library=library)
@@ -70,12 +96,18 @@ def search(fitter: Fitter, null: Fitted, *, pool: ThreadPoolExecutor, progress: 
         rounds.append(one)
         if one.accepted is None:
             break
-        best = one.accepted.fitted
+        fitter, best = renew(fitter, one.accepted.fitted)
     return Search(null, best, tuple(rounds))
 
 
 def _round(
-    fitter: Fitter, best: Fitted, before: Sequence[Round], *, pool: ThreadPoolExecutor, progress: bool, library: Sequence[str] | None
+    fitter: Fitter,
+    best: Fitted,
+    before: Sequence[Round],
+    *,
+    pool: ThreadPoolExecutor,
+    progress: bool,
+    library: Sequence[str] | None,
 ) -> Round | None:
     names = [c for c in candidates(fitter.case, best) if library is None or c in library]
     if not names:
@@ -92,8 +124,9 @@ def _round(
         trials += found
     trials.sort(key=lambda t: -t.evidence_gain)
     temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
-    accepted = next((t for t in trials[:1] if _accept(t, before)), None)
-    return Round(tuple(leads), tuple(trials), _probabilities(trials, before, temperature), accepted, temperature)
+    bar = _bar(fitter, before)
+    accepted = next((t for t in trials[:1] if bar.passed(t)), None)
+    return Round(tuple(leads), tuple(trials), _probabilities(trials, bar, temperature), accepted, temperature)
 
 
 def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> list[Trial]:
@@ -118,24 +151,24 @@ def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> 
     return [Trial(lead.effect, found, found.evidence - best.evidence, float(np.sum(gains)), spread)]
 
 
-def _accept(trial: Trial, before: Sequence[Round]) -> bool:
-    if not before:
-        return trial.evidence_gain > DETECT_EVIDENCE and trial.left_out_gain > DETECT_LEFT_OUT
-    first = before[0].accepted
-    assert first is not None
-    return (
-        trial.evidence_gain > max(AGAIN_EVIDENCE, AGAIN_SHARE * first.evidence_gain)
-        and trial.left_out_gain > max(AGAIN_LEFT_OUT, STEADY * trial.left_out_se)
-    )
+def _bar(fitter: Fitter, before: Sequence[Round]) -> Bar:
+    """A further effect may only imitate what is wrong with the shape of the first, and must gain more. Without repeats
+    that error counts as noise already."""
+    first = before[0].accepted if before else None
+    if first is None:
+        return Bar(DETECT_EVIDENCE, DETECT_LEFT_OUT, 0.0)
+    if not fitter.floor.repeated:
+        return Bar(DETECT_EVIDENCE, DETECT_LEFT_OUT, 2.0)
+    return Bar(max(AGAIN_EVIDENCE, AGAIN_SHARE * first.evidence_gain), AGAIN_LEFT_OUT, 2.0)
 
 
-def _probabilities(trials: Sequence[Trial], before: Sequence[Round], temperature: float) -> dict[str | None, float]:
-    """Tempered evidence: over-confident evidence is divided by a temperature. None stands for no (further) effect."""
-    threshold = AGAIN_EVIDENCE if before else DETECT_EVIDENCE
-    gains: dict[str | None, float] = {None: threshold}
-    for t in trials:  # what left-out experiments do not confirm counts no more than nothing
-        unconfirmed = min(t.evidence_gain, threshold - UNCONFIRMED * temperature)
-        gains[t.effect] = t.evidence_gain if _accept(t, before) else unconfirmed
+def _probabilities(trials: Sequence[Trial], bar: Bar, temperature: float) -> dict[str | None, float]:
+    """Tempered evidence: over-confident evidence is divided by a temperature. None stands for no (further) effect;
+    what is not established ranks clearly behind it."""
+    gains: dict[str | None, float] = {None: bar.evidence}
+    for t in trials:
+        most = np.inf if bar.passed(t) else bar.evidence - UNCONFIRMED * temperature
+        gains[t.effect] = min(t.evidence_gain, most)
     top = max(gains.values())
     weights = {name: float(np.exp((g - top) / temperature)) for name, g in gains.items()}
     total = sum(weights.values())
