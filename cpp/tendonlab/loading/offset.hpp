@@ -4,14 +4,14 @@
 namespace tendonlab::loading {
 /// Offset of the load: a constant disturbance on the joint that nobody wrote down.
 ///
-///   F -> F + F_0
+///   F -> F + F_0                                              (constant term of the equation of motion)
 ///
 /// F: effort known to act on the joint, N (N·m), positive forwards. F_0 = 0 switches it off. A rigid joint cannot tell
 /// it from an offset of the actuator; behind an elastic cable the stretch does.
 template <class T>
 struct Offset {
-  static constexpr std::string_view name = "offset", source = "constant disturbance torque", equation = "F + F_0",
-                                    summary = "load offset: a constant disturbance on the joint";
+  static constexpr std::string_view name = "offset", source = "constant term of the equation of motion",
+                                    equation = "F + F_0", summary = "load offset: a constant disturbance on the joint";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T offset;
 
