@@ -4,12 +4,12 @@
 namespace tendonlab::actuation {
 /// Actuation delay: the command takes effect later.
 ///
-///   u(t) -> u(t - d)                                                      (time shift, S2 sec. 4)
+///   u(t) -> u(t - d)                                                      (time shift, S2 fig. 12)
 ///
 /// d: delay, s. Whoever holds the signal's past applies it. d = 0 switches it off.
 template <class T>
 struct Delay {
-  static constexpr std::string_view name = "delay", source = "S2 sec. 4", equation = "u(t - d)",
+  static constexpr std::string_view name = "delay", source = "S2 fig. 12", equation = "u(t - d)",
                                     summary = "actuation delay: the command takes effect later";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T late;

@@ -4,12 +4,12 @@
 namespace tendonlab::actuation {
 /// Gain error: the effort is not what the torque constant says.
 ///
-///   u -> (1 + e) u                                                        (S2 sec. 4)
+///   u -> (1 + e) u                                                        (EMPS benchmark, drive gain)
 ///
 /// u: effort by the torque constant, N (N·m). e: relative error, 1. e = 0 switches it off.
 template <class T>
 struct GainError {
-  static constexpr std::string_view name = "gain_error", source = "S2 sec. 4", equation = "(1 + e) u",
+  static constexpr std::string_view name = "gain_error", source = "EMPS benchmark, drive gain", equation = "(1 + e) u",
                                     summary = "actuation gain error: the effort is not what the torque constant says";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T error;

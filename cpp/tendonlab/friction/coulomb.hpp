@@ -4,12 +4,12 @@
 namespace tendonlab::friction {
 /// Coulomb (kinetic) friction: a constant level that opposes sliding.
 ///
-///   g = F_c                                                               (S2 eq. 10)
+///   g = F_c                                                               (S1 eq. 12)
 ///
 /// g: level, N (N·m). Sticks at rest up to this level. F_c = 0 switches it off. No memory.
 template <class T>
 struct Coulomb {
-  static constexpr std::string_view name = "coulomb", source = "S2 eq. 10", equation = "F_c sgn(v)",
+  static constexpr std::string_view name = "coulomb", source = "S1 eq. 12", equation = "F_c sgn(v)",
                                     summary = "Coulomb (kinetic) friction: a constant level that opposes sliding";
   static constexpr unsigned roles = role::level, sees = sees_nothing;
   T coulomb;

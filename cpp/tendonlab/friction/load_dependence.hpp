@@ -4,13 +4,13 @@
 namespace tendonlab::friction {
 /// Load-dependent friction: dry friction in proportion to the effort that the element carries.
 ///
-///   g = c |F_load|                                                        (S1 eq. 6; S0 eq. 11 with exponent 1)
+///   g = c |F_load|                                                        (S1 eq. 11; S0 eq. 11 with exponent 1)
 ///
 /// F_load: torque or tension carried, N (N·m), from the system. g: its share of the dry level, N (N·m).
 /// A level of its own, so that it also acts where no Coulomb friction does; c = 0 switches it off. No memory.
 template <class T>
 struct LoadDependence {
-  static constexpr std::string_view name = "load_dependence", source = "S1 eq. 6", equation = "c |F_load| sgn(v)",
+  static constexpr std::string_view name = "load_dependence", source = "S1 eq. 11", equation = "c |F_load| sgn(v)",
                                     summary =
                                         "load-dependent friction: dry friction in proportion to the effort carried";
   static constexpr unsigned roles = role::level, sees = sees_load;

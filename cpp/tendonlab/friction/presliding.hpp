@@ -11,7 +11,8 @@ namespace tendonlab::friction {
 template <class T>
 struct Presliding {
   static constexpr std::string_view name = "presliding", source = "S4 eq. 27",
-                                    equation = "(1 - p) g sgn(v) + p (sigma_0 z + sigma_1 z'), z' = v - sigma_0 |v| z / g",
+                                    equation =
+                                        "(1 - p) g sgn(v) + p (sigma_0 z + sigma_1 z'), z' = v - sigma_0 |v| z / g",
                                     summary = "presliding: a bristle replaces the jump of dry friction at reversal";
   static constexpr unsigned roles = role::memory | role::refines, sees = sees_velocity;
   T stiffness, damping, share;

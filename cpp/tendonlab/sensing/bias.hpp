@@ -4,12 +4,12 @@
 namespace tendonlab::sensing {
 /// Sensor bias: a constant added to the reading.
 ///
-///   y -> y + y_0                                                          (S2 sec. 4)
+///   y -> y + y_0                                                          (S0, calibration of the load cells)
 ///
 /// y: reading, unit of its signal. y_0 = 0 switches it off.
 template <class T>
 struct Bias {
-  static constexpr std::string_view name = "bias", source = "S2 sec. 4", equation = "y + y_0",
+  static constexpr std::string_view name = "bias", source = "S0, calibration of the load cells", equation = "y + y_0",
                                     summary = "sensor bias: a constant added to the reading";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T added;

@@ -4,13 +4,13 @@
 namespace tendonlab::transmission {
 /// Backlash: play in the motion; inside the gap nothing touches, on a flank the stretch counts from the flank.
 ///
-///   x -> x - b side / 2,  v -> v   on a flank (side = +1, -1);   0 inside (side = 0)     (S4 sec. 2, play operator)
+///   x -> x - b side / 2,  v -> v   on a flank (side = +1, -1);   0 inside (side = 0)     (Nordin and Gutman 2002)
 ///
 /// x: stretch of the transmission, m (rad), v its rate. b: whole gap, m (rad). b = 0 switches it off. No memory:
 /// `side` is a mode of the stepper.
 template <class T>
 struct Backlash {
-  static constexpr std::string_view name = "backlash", source = "S4 sec. 2",
+  static constexpr std::string_view name = "backlash", source = "Nordin and Gutman, Automatica 38 (2002), dead zone",
                                     equation = "x - b sgn(x)/2 where |x| > b/2, else 0",
                                     summary = "backlash: play in the motion, whatever the load";
   static constexpr unsigned roles = role::motion, sees = sees_position;
