@@ -1,6 +1,6 @@
 #pragma once
-#include "tendonlab/loading/offset.hpp"
+#include "tendonlab/core/law.hpp"
 
 namespace tendonlab::loading {
-using All = Laws<Offset>;
+using All = Laws<>;
 }
