@@ -1,6 +1,6 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/loading/offset.hpp"
 
 namespace tendonlab::loading {
-using All = Laws<>;
+using All = Laws<Offset>;
 }

@@ -1,0 +1,28 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::loading {
+/// Offset of the load: a constant disturbance on the joint that nobody wrote down.
+///
+///   F -> F + F_0                                              (constant term of the equation of motion)
+///
+/// F: effort known to act on the joint, N (N·m), positive forwards. F_0 = 0 switches it off. A rigid joint cannot tell
+/// it from an offset of the actuator; behind an elastic cable the stretch does.
+template <class T>
+struct Offset {
+  static constexpr std::string_view name = "offset", source = "constant term of the equation of motion",
+                                    equation = "F + F_0", summary = "load offset: a constant disturbance on the joint";
+  static constexpr unsigned roles = 0, sees = sees_nothing;
+  T offset;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&Offset::offset, "offset", Dimension::effort, Purpose::amplitude, 0.05, -inf, inf,
+                                "effort on the joint beside the known one")};
+  }
+  T lateness() const { return T(0.0); }
+  template <class S>
+  S apply(const S& signal) const {
+    return signal + offset;
+  }
+};
+}  // namespace tendonlab::loading
