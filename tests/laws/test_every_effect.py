@@ -18,8 +18,8 @@ MOTOR_SIDE = ("motor", "actuation", "sensor.motor_angle")
 
 
 def scale(kind: str, element: str, dimension: str) -> float:
-    """What is of the order of the motion; at the motor N times or 1/N of it. A delay does not end on a sample: the start
-    of the record is a kink there."""
+    """What is of the order of the motion; at the motor N times or 1/N of it. A delay does not end on a sample: the
+    start of the record is a kink there."""
     ratio = 10.0 if kind == "two_inertia" and element in MOTOR_SIDE else 1.0
     effort, displacement, flow = 0.5 / ratio, 0.1 * ratio, 1.0 * ratio
     return {
