@@ -1,6 +1,6 @@
 #pragma once
-// Load, actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are told
-// apart, since only whoever holds the signal's past can apply them.
+// Load, actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are
+// told apart, since only whoever holds the signal's past can apply them.
 #include "tendonlab/core/law.hpp"
 
 namespace tendonlab {

@@ -13,9 +13,9 @@ struct Sliding {
 };
 enum Sees : unsigned { sees_nothing = 0, sees_velocity = 1, sees_position = 2, sees_load = 4 };
 
-/// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to the
-/// dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of other
-/// laws goes, and nothing by itself.
+/// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
+/// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of
+/// other laws goes, and nothing by itself.
 namespace role {
 enum : unsigned { motion = 1, level = 2, factor = 4, force = 8, memory = 16, refines = 32 };
 }
