@@ -48,6 +48,7 @@ class Contact {
     for (int m = 0; m < directions; ++m)
       if (directed[m] && frame.mode[m] == 0.0) stuck[count++] = m;
     frame.holds = count > 0;
+    if (!frame.holds) return;
     for (int j = 0; j < n; ++j)
       for (int l = 0; l < n; ++l) frame.keep[j][l] = T(j == l ? 1.0 : 0.0);
     for (int a = 0; a < count; ++a) remove(frame, representative[stuck[a]]);
@@ -137,7 +138,7 @@ class Contact {
     for (int m = 0; m < directions; ++m)
       if (turning[m] && directed[m]) frame.mode[m] = 0.0;
     hold(frame);
-    for (int round = 0; round <= directions; ++round) {
+    for (int round = 0; round <= directions && frame.holds; ++round) {
       const auto push = holding(y, frame, in);
       int worst = -1;
       double excess = 0;

@@ -12,10 +12,10 @@ class Jump {
   /// Before the modes change: how the instant of the event moves with the parameters. mode -1: a jump of the inputs;
   /// `toward`: the side on which a gap is left.
   template <class Simulation>
-  Jump(const Simulation& s, int mode, double toward) {
+  Jump(const Simulation& s, int mode, double toward) : happens(mode >= 0 || varies(s.drive.late)) {
     if constexpr (!std::is_same_v<T, double>) {
+      if (!happens) return;
       before = rate(s.system, s.y, s.frame, s.drive);
-      moves = T(0.0) * s.drive.late;
       if (mode < 0)
         moves = s.drive.late;  // the command is late by a parameter: so is its jump
       else
@@ -27,6 +27,7 @@ class Jump {
   template <class Simulation>
   void apply(Simulation& s) const {
     if constexpr (!std::is_same_v<T, double>) {
+      if (!happens) return;
       const auto after = rate(s.system, s.y, s.frame, s.drive);
       for (std::size_t j = 0; j < n; ++j)
         shift(s.y.at.velocity[j], plain(before.acceleration[j]) - plain(after.acceleration[j]));
@@ -60,6 +61,7 @@ class Jump {
   }
   static T quotient(const T& guard, double rate) { return rate == 0.0 ? T(0.0) : (-1.0 / rate) * guard; }
 
+  bool happens;  ///< most inputs jump at instants that no parameter moves
   Rate<T, n, nz> before;
   T moves{};
 };

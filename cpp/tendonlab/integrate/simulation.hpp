@@ -20,6 +20,7 @@ class Simulation {
         t(experiment.time.front()),
         end(experiment.time.back()) {
     h = std::min(1e-4, 0.1 * (end - t));
+    std::apply([&](const auto&... slot) { remembers = (slot.has(role::memory) || ...); }, of.slot);
   }
   Y y;  ///< the initial state before `run`, the final one after it
 
@@ -240,6 +241,7 @@ class Simulation {
   }
   /// The scale of each memory follows the friction level it stands for.
   void refresh() {
+    if (!remembers) return;
     const auto c = system.couple(y.at, frame.mode, drive);
     unroll<slots<System>>([&](auto i) {
       if constexpr (SlotOf<System, i>::states > 0) {
@@ -262,6 +264,7 @@ class Simulation {
   Drive<T> drive;
   double t, end, h, kink = 0;
   bool retakes = false;  ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
+  bool remembers = false;  ///< does any law have a memory?
   double memory_level[slots<System>] = {};
 
   template <class, class>

@@ -19,7 +19,8 @@ AGAIN_EVIDENCE, AGAIN_LEFT_OUT, AGAIN_SHARE = 30.0, 9.0, 0.01
 MAX_EFFECTS = 3
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
-SKETCH = 8  # iterations after which a fit that cannot catch up is abandoned
+HOPEFUL = 0.3  # of what an effect must gain, which the screen must promise for a refit
+SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5
 
 
@@ -115,16 +116,16 @@ def _round(
     label = "effect" if not before else f"effect {len(before) + 1}"
     work = pool.map(lambda name: screen(fitter, best, name), names)
     leads = sorted(tqdm(work, desc=f"screen {label}", total=len(names), disable=not progress, leave=False), key=lambda x: -x.gain)
-    chosen = leads[: NUM_REFIT_AGAIN if before else NUM_REFIT]
-    first = _refit(fitter, best, chosen[0], rival=None)
+    bar = _bar(fitter, before)
+    chosen = [x for x in leads if x.gain > HOPEFUL * bar.evidence][: NUM_REFIT_AGAIN if before else NUM_REFIT]
+    first = _refit(fitter, best, chosen[0], rival=None) if chosen else []
     rival = max((t.evidence_gain for t in first), default=0.0)
     rest = pool.map(lambda lead: _refit(fitter, best, lead, rival=rival), chosen[1:])
     trials = list(first)
-    for found in tqdm(rest, desc=f"refit {label}", total=len(chosen) - 1, disable=not progress, leave=False):
+    for found in tqdm(rest, desc=f"refit {label}", total=len(chosen[1:]), disable=not progress, leave=False):
         trials += found
     trials.sort(key=lambda t: -t.evidence_gain)
     temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
-    bar = _bar(fitter, before)
     accepted = next((t for t in trials[:1] if bar.passed(t)), None)
     return Round(tuple(leads), tuple(trials), _probabilities(trials, bar, temperature), accepted, temperature)
 
@@ -137,8 +138,9 @@ def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> 
         added = (*best.added, lead.effect)
         try:
             fitted = fitter.fit(system, added=added, initial=best.initial, max_iterations=SKETCH)
-            ahead = rival is None or fitted.evidence - best.evidence > CATCH_UP * rival
-            if not fitted.converged and ahead and (found is None or fitted.evidence > found.evidence - 50):
+            behind = rival is not None and fitted.evidence - best.evidence < CATCH_UP * rival
+            worse = found is not None and fitted.evidence < found.evidence - 50
+            if not (fitted.converged or behind or worse):
                 fitted = fitter.fit(fitted.system, added=added, initial=fitted.initial, max_iterations=40)
         except (NumericalError, ParameterError):
             continue
