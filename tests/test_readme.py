@@ -53,11 +53,25 @@ def test_the_dataset_of_the_reader_loads(tmp_path: Path) -> None:
     assert np.isfinite(rig.system().simulate(rig["chirp"])["joint_angle"]).all()
 
 
-@pytest.mark.parametrize(
-    "line", [line for block in blocks("sh") for line in block.splitlines() if line.startswith("tendonlab ")]
-)
+COMMANDS = [
+    line.replace("python -m tendonlab.blind", "tendonlab blind")
+    for block in blocks("sh")
+    for line in block.splitlines()
+]
+
+
+@pytest.mark.parametrize("line", COMMANDS)
 def test_commands_exist(line: str) -> None:
-    assert callable(cli._parser().parse_args(shlex.split(line)[1:]).run)
+    program, *arguments = shlex.split(line)
+    assert program == "tendonlab"
+    assert cli._parser().parse_args(arguments).run.__name__ != "explain"
+
+
+def test_options_of_the_build_exist() -> None:
+    named = re.findall(r"cmake\.define\.(\w+)=", TEXT)
+    cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    assert named
+    assert all(f"option({name} " in cmake for name in named)
 
 
 def test_the_ci_runs_the_line_of_the_readme() -> None:
