@@ -105,27 +105,8 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
     out["ports"] = to_array(std::move(run.port), {static_cast<py::ssize_t>(of.info().ports.size()), 4, samples});
   return out;
 }
-}  // namespace
-
-void bind_systems(py::module_& module) {
-  module.def(
-      "kinds",
-      [] {
-        std::vector<std::string> names;
-        for (const auto& m : models()) names.push_back(m->info().kind);
-        return names;
-      },
-      "Names of all systems.");
-  module.def("system_info", &system_info, py::arg("kind"), "Everything a system states about itself, as plain types.");
-  module.def(
-      "rigid_motion",
-      [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active) {
-        const Model& of = model(kind);
-        const RigidMotion r = of.rigid_motion(make_configuration(of, values, active));
-        return py::make_tuple(r.shape, r.inertia, r.effort_per_command);
-      },
-      py::arg("kind"), py::arg("values"), py::arg("active"),
-      "Motion of each degree of freedom with the first if nothing stretched, inertia and effort per unit of command.");
+/// What `simulate` is asked.
+void bind_experiments(py::module_& module) {
   py::class_<Signal>(module, "Signal",
                      "A piecewise cubic in time, from knots (m,) and coefficients (m, 4) about each knot.")
       .def(py::init<>())
@@ -171,6 +152,29 @@ void bind_systems(py::module_& module) {
            }),
            py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,
            py::arg("velocity_scale") = 1e-2, py::arg("max_attempts") = 20'000'000L, py::arg("ports") = false);
+}
+}  // namespace
+
+void bind_systems(py::module_& module) {
+  module.def(
+      "kinds",
+      [] {
+        std::vector<std::string> names;
+        for (const auto& m : models()) names.push_back(m->info().kind);
+        return names;
+      },
+      "Names of all systems.");
+  module.def("system_info", &system_info, py::arg("kind"), "Everything a system states about itself, as plain types.");
+  module.def(
+      "rigid_motion",
+      [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active) {
+        const Model& of = model(kind);
+        const RigidMotion r = of.rigid_motion(make_configuration(of, values, active));
+        return py::make_tuple(r.shape, r.inertia, r.effort_per_command);
+      },
+      py::arg("kind"), py::arg("values"), py::arg("active"),
+      "Motion of each degree of freedom with the first if nothing stretched, inertia and effort per unit of command.");
+  bind_experiments(module);
   module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
              py::arg("seeds"), py::arg("settings"),
              "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, 4, samples).");
