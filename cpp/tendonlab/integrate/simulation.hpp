@@ -263,7 +263,7 @@ class Simulation {
   Frame<System, T> frame;
   Drive<T> drive;
   double t, end, h, kink = 0;
-  bool retakes = false;  ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
+  bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?
   double memory_level[slots<System>] = {};
 
