@@ -1,5 +1,5 @@
 """What is free in a fit and what is believed of it beforehand: the user's `sd`, else the library's defaults, scaled to
-the rig by what it was seen to do (DIAGNOSIS: 0.3 in log, 0.6 for damping; effects 1.5 of their unit, shapes 0.7 in log)."""
+the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 1.5 of their unit, shapes 0.7 in log)."""
 
 from __future__ import annotations
 
@@ -99,7 +99,8 @@ def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
         measured = np.concatenate([e.measured[c] for e in experiments])
         spread = float(np.nanstd(measured)) if np.isfinite(measured).any() else 1.0
         found[f"sensor.{output.name}"] = Scale(first.effort, first.flow, _positive(spread))
-    return {**{element: first for element in info.elements}, **found}
+    # elements without a port act on one: the actuation on the first, the load on the joint
+    return {**dict.fromkeys(info.elements, first), "load": found.get("joint", first), **found}
 
 
 def free_parameters(

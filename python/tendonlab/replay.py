@@ -42,8 +42,8 @@ class Replay:
 
 @dataclass(frozen=True, kw_only=True)
 class Prepared:
-    """An experiment as the core simulates it. `measured`: (outputs, samples), NaN where missing. `initial`: the parts of
-    the initial state that are nuisances, with the sd of their priors."""
+    """An experiment as the core simulates it. `measured`: (outputs, samples), NaN where missing. `initial`: the parts
+    of the initial state that are nuisances, with the sd of their priors."""
 
     name: str
     core: _core.Experiment
@@ -101,7 +101,9 @@ def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
     )  # fmt: skip
 
 
-def simulate(system: System, experiment: Experiment | pd.DataFrame, *, tolerance: float, ports: bool, replay: str) -> Trajectory:
+def simulate(
+    system: System, experiment: Experiment | pd.DataFrame, *, tolerance: float, ports: bool, replay: str
+) -> Trajectory:
     """Simulate one experiment; see System.simulate."""
     from tendonlab.data import Experiment
 
@@ -146,7 +148,9 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
             held = experiment.holds.get(given.name, given.hold)
             signals.append(hold(time, values) if held else linear(time, values))
         elif given.required and not (k == 0 and replay.kind == "controller"):
-            raise DatasetError(f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it")
+            raise DatasetError(
+                f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it"
+            )
         else:
             signals.append(_core.Signal())
     return signals
@@ -159,10 +163,17 @@ def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.n
     if replay.kind == "injection":
         c = names.index(str(replay.output))
         return _core.Loop(
-            kind="injection", axis=system.info.outputs[c].axis or 0, output=c, proportional=replay.kp, derivative=replay.kd,
-            reference_weight=1.0, limit=np.inf, sample_time=0.0, reference=smoothed(experiment.time, measured[c]),
+            kind="injection",
+            axis=system.info.outputs[c].axis or 0,
+            output=c,
+            proportional=replay.kp or 0.0,
+            derivative=replay.kd or 0.0,
+            reference_weight=1.0,
+            limit=np.inf,
+            sample_time=0.0,
+            reference=smoothed(experiment.time, measured[c]),
             disturbance=_core.Signal(),
-        )  # fmt: skip
+        )
     controller = system.controller
     if controller is None:
         raise ParameterError("replay 'controller': the system knows no controller")
@@ -175,18 +186,24 @@ def _controller_loop(experiment: Experiment, system: System, controller: Control
     cascade = controller.kind == "cascade"
     reference = data[controller.reference].to_numpy(dtype=float)
     differentiated = not cascade and controller.derivative_on == "error" and controller.sample_time == 0.0
-    # A reference that is differentiated needs a slope without jumps; else the values between samples are the contract's.
+    # A reference that is differentiated needs a slope without jumps; else it goes between samples as the contract says.
     make = hold if held.get(controller.reference, False) else smooth if differentiated else linear
     disturbance = _core.Signal()
     if controller.disturbance is not None:
         values = data[controller.disturbance].to_numpy(dtype=float)
         disturbance = hold(time, values) if held.get(controller.disturbance, True) else linear(time, values)
     return _core.Loop(
-        kind="controller", axis=system.info.outputs[c].axis or 0, output=c,
-        proportional=controller.kd * controller.kp if cascade else controller.kp, derivative=controller.kd,
+        kind="controller",
+        axis=system.info.outputs[c].axis or 0,
+        output=c,
+        proportional=controller.kd * controller.kp if cascade else controller.kp,
+        derivative=controller.kd,
         reference_weight=1.0 if not cascade and controller.derivative_on == "error" else 0.0,
-        limit=controller.limit, sample_time=controller.sample_time, reference=make(time, reference), disturbance=disturbance,
-    )  # fmt: skip
+        limit=controller.limit,
+        sample_time=controller.sample_time,
+        reference=make(time, reference),
+        disturbance=disturbance,
+    )
 
 
 def _initial_state(
@@ -199,7 +216,10 @@ def _initial_state(
     starts: dict[int, tuple[float, float, float]] = {}
     for c, signal in enumerate(info.outputs):
         if signal.axis is not None and np.isfinite(measured[c]).any():
-            starts[signal.axis] = (*motion_at_start(experiment.time, measured[c]), float(np.nanmax(measured[c]) - np.nanmin(measured[c])))
+            starts[signal.axis] = (
+                *motion_at_start(experiment.time, measured[c]),
+                float(np.nanmax(measured[c]) - np.nanmin(measured[c])),
+            )
     position, velocity, free, sd = [0.0] * info.dof, [0.0] * info.dof, [], []
     for j in range(info.dof):
         known = j if j in starts else next(iter(starts), None)

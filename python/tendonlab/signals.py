@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from tendonlab import _core
@@ -39,7 +41,9 @@ def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]
     kept = np.isfinite(values)
     t, y = time[kept] - time[0], values[kept]
     num = max(8, int(np.searchsorted(t, 0.02)))
-    line, covariance = np.polyfit(t[:num], y[:num], 1, cov=True) if len(t) > num > 3 else (np.array([0.0, y[0]]), np.eye(2))
+    line, covariance = (
+        np.polyfit(t[:num], y[:num], 1, cov=True) if len(t) > num > 3 else (np.array([0.0, y[0]]), np.eye(2))
+    )
     speed = float(np.ptp(y)) / max(float(t[-1]), 1e-12)
     if abs(line[0]) < max(4.0 * float(np.sqrt(covariance[0, 0])), 0.01 * speed):
         return float(np.mean(y[:num])), 0.0
@@ -47,7 +51,7 @@ def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]
 
 
 def scales_of(time: np.ndarray, positions: np.ndarray) -> tuple[float, float]:
-    """A tenth of the smallest rms travel and speed among measured positions (rows): the absolute scales of step control."""
+    """A tenth of the smallest rms travel and speed among measured positions (rows): scales of the stepper."""
     travel, speed = [], []
     for row in positions:
         kept = np.isfinite(row)
@@ -72,9 +76,9 @@ def white_noise_sd(values: np.ndarray) -> float:
     return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
 
 
-def _from_pieces(piecewise: object) -> _core.Signal:
-    knots = np.asarray(piecewise.x, dtype=float)  # type: ignore[attr-defined]
-    c = np.asarray(piecewise.c, dtype=float)  # type: ignore[attr-defined]
+def _from_pieces(piecewise: Any) -> _core.Signal:
+    knots = np.asarray(piecewise.x, dtype=np.float64)
+    c = np.asarray(piecewise.c, dtype=np.float64)
     pieces = np.flatnonzero(np.diff(knots) > 0)  # a spline repeats its end knots
     coefficients = np.zeros((len(pieces), 4))
     coefficients[:, : c.shape[0]] = c[::-1, pieces].T

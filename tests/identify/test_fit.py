@@ -46,7 +46,7 @@ def test_parameters_of_noisy_runs_are_found(request: Any, name: str, true: dict[
 
 
 def test_the_gradient_of_the_cost_vanishes_at_the_optimum(drive: Any) -> None:
-    """A run at 1e-7 moves the cost by a few hundredths from step to step, which hides a tenth of a sigma; 1e-10 does not."""
+    """At 1e-7 runs move the cost by hundredths from step to step, which hides a tenth of a sigma; at 1e-10 not."""
     drive = replace(drive, settings=_core.Settings(tolerance=1e-10))
     found = drive.fit(drive.tasks(**TRUE), drive.free(*FRICTION), tolerance=1e-12)
     gradient = sum(j.T @ r for j, r in zip(found["jacobian"], found["residuals"], strict=True))

@@ -42,6 +42,12 @@ class Case:
         """Indices of the experiments held out."""
         return tuple(i for i, e in enumerate(self.experiments) if e.split == "test")
 
+    def training_on(self, experiments: Sequence[int]) -> Case:
+        """The same case with these experiments to fit and none held out."""
+        splits = ["train" if i in experiments else "unused" for i in range(len(self.experiments))]
+        chosen = (replace(e, split=s) for e, s in zip(self.experiments, splits, strict=True))
+        return replace(self, experiments=tuple(chosen))
+
     @property
     def outputs(self) -> list[str]:
         """Names of the system's outputs, measured or not."""
@@ -96,7 +102,8 @@ def _noise(dataset: Dataset, prepared: Sequence[Prepared], c: int) -> float:
     found = spec.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
     coarse = (spec.resolution or 0.0) / np.sqrt(12)
     smallest = 1e-9 * max(float(np.nanmax(np.abs(r))) for r in records)
-    return max(float(np.hypot(found, coarse)) if spec.noise_sd is None else found, coarse, smallest, 1e-300)
+    total = found if spec.noise_sd is not None else float(np.hypot(found, coarse))
+    return float(max(total, coarse, smallest, 1e-300))
 
 
 def _settings(system: System, prepared: Sequence[Prepared], tolerance: float) -> _core.Settings:

@@ -21,10 +21,12 @@ FEW = 4  # with fewer training experiments, blocks stand for them
 
 @dataclass(frozen=True)
 class Score:
-    """`residual`, `jacobian`: whitened rows of one block, the initial state and run-to-run friction marginalised."""
+    """`residual`, `jacobian`: whitened rows of one block of training experiment `experiment`, the initial state and
+    run-to-run friction marginalised."""
 
     residual: np.ndarray
     jacobian: np.ndarray
+    experiment: int
 
 
 @dataclass(frozen=True)
@@ -56,21 +58,35 @@ class Fitted:
         fit = self.share * sum(float(b.residual @ b.residual) for b in self.blocks)
         sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
         _, volume = np.linalg.slogdet(np.eye(len(sd)) + sd[:, None] * self._information * sd)
-        return -0.5 * (fit + float(np.sum(away)) + volume + self.state_volume)
+        return float(-0.5 * (fit + np.sum(away) + volume + self.state_volume))
 
     @cached_property
     def left_out(self) -> np.ndarray:
         """Predictive log score of each block when it is left out: one Newton step without it."""
         scores = []
-        moving = ~np.array(self.at_bound, dtype=bool)
         for b in self.blocks:
-            j = b.jacobian[:, moving]
-            without = self.precision[np.ix_(moving, moving)] - self.share * j.T @ j
-            pull = self.share * j.T @ b.residual
-            step = np.linalg.solve(without + 1e-9 * np.diag(np.diag(self.precision)[moving]), pull)
-            predicted = b.residual + j @ step
+            predicted = b.residual + b.jacobian @ self._step_without([b])
             scores.append(-0.5 * self.share * float(predicted @ predicted))
         return np.array(scores)
+
+    def without(self, experiment: int) -> System:
+        """The model fitted without one training experiment, by one Newton step; itself where there is no other."""
+        blocks = [b for b in self.blocks if b.experiment == experiment]
+        if len(blocks) == len(self.blocks):
+            return self.system
+        x = self.x + self._step_without(blocks)
+        values = [min(max(f.value(float(v)), f.lower), f.upper) for f, v in zip(self.free, x, strict=True)]
+        return self.system.with_parameters({f.name: v for f, v in zip(self.free, values, strict=True)})
+
+    def _step_without(self, blocks: Sequence[Score]) -> np.ndarray:
+        """How the coordinates move when some blocks are left out: one Newton step; what is at a bound stays there."""
+        moving = ~np.array(self.at_bound, dtype=bool)
+        known = self.precision - self.share * sum(b.jacobian.T @ b.jacobian for b in blocks)
+        known += 1e-9 * np.diag(np.diag(self.precision))
+        pull = self.share * sum(b.jacobian.T @ b.residual for b in blocks)
+        step = np.zeros(len(self.x))
+        step[moving] = np.linalg.solve(known[np.ix_(moving, moving)], np.asarray(pull)[moving])
+        return step
 
     @cached_property
     def mean_square(self) -> float:
@@ -136,8 +152,9 @@ class Fitter:
         )  # fmt: skip
         start = [list(s) for s in initial]
         if solve:
-            limits = {"max_iterations": max_iterations, "tolerance": 1e-6}
-            found = _core.fit(*arguments, initial=start, cancel=self.cancel, **limits)
+            found = _core.fit(
+                *arguments, initial=start, max_iterations=max_iterations, tolerance=1e-6, cancel=self.cancel
+            )
         else:
             found = _core.linearise(*arguments, initial=start)
         fitted = system.with_parameters({f.name: found["values"][f.index] for f in free})
@@ -157,7 +174,7 @@ class Fitter:
             volume += float(np.linalg.slogdet(np.eye(k.shape[1]) + k.T @ k)[1])
             rows = self.rows(states[t], t, found["residuals"][t])
             slopes = self.rows((k, np.zeros(len(z))), t, found["jacobian"][t])
-            blocks += [Score(r, j) for r, j in zip(rows, slopes, strict=True)]
+            blocks += [Score(r, j, t) for r, j in zip(rows, slopes, strict=True)]
         return Fitted(
             added=added,
             system=system,

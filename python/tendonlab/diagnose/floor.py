@@ -1,9 +1,9 @@
 """The noise floor: what repeats of an experiment do not repeat (DIAGNOSIS section 2, steps 3 and 4).
 
-Repeats are compared through the residuals of the same model. What a slightly different friction from run to run explains
-is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats nothing tells
-noise from what the model lacks: then all of a residual counts as noise, with as few independent samples as its memory
-leaves, and is judged anew after each effect that was found."""
+Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
+explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats
+nothing tells noise from what the model lacks: then all of a residual counts as noise, with as few independent samples
+as its memory leaves, and is judged anew after each effect that was found."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ RUN_TO_RUN_UNKNOWN = 0.02  # assumed in the plain floor where nothing repeats
 
 @dataclass(frozen=True)
 class Floor:
-    """`rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and innovation
-    sd of each output. `tau`: relative sd of friction from run to run. `repeated`: whether repeats say so. `share` of the
-    whitened samples that count as independent: decisions weigh them by it, fits as they are."""
+    """`rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and
+    innovation sd of each output. `tau`: relative sd of friction from run to run. `repeated`: whether repeats say so.
+    `share` of the whitened samples that count as independent: decisions weigh them by it, fits as they are."""
 
     rms: np.ndarray
     ar: list[list[float]]
@@ -82,7 +82,9 @@ def sensitivities(case: Case, system: System, i: int, initial: Sequence[float]) 
         rows += len(group)
     sd = np.asarray(ready.initial_sd).reshape(-1, 1, 1)
     friction = np.array(directions) if directions else np.zeros((0, *ready.measured.shape))
-    return Sensitivities(run["outputs"] - ready.measured, friction, gradient[rows:] * sd if len(sd) else gradient[rows:])
+    return Sensitivities(
+        run["outputs"] - ready.measured, friction, gradient[rows:] * sd if len(sd) else gradient[rows:]
+    )
 
 
 def started(case: Case, i: int, initial: Sequence[float]) -> _core.Experiment:
@@ -151,7 +153,9 @@ def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> 
     if not seen or not len(seen[0].friction):
         return plain
     return [
-        _core.Whitening(floor.ar, floor.sd, ready.measured, by_noise.apply_many(s.friction), [floor.tau] * len(s.friction))
+        _core.Whitening(
+            floor.ar, floor.sd, ready.measured, by_noise.apply_many(s.friction), [floor.tau] * len(s.friction)
+        )
         for ready, by_noise, s in zip(case.prepared, plain, seen, strict=True)
     ]
 
@@ -174,7 +178,7 @@ def kept_samples(floor: Floor, measured: np.ndarray) -> list[np.ndarray]:
 
 def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.ndarray, np.ndarray]:
     """A difference without what friction from run to run and the initial state explain, and friction's coefficients."""
-    kept = [c for c in case.measured]
+    kept = case.measured
     weight = case.noise[kept][:, None]
     y = (difference[kept] / weight).ravel()
     basis = np.concatenate([s.friction[:, kept], s.initial[:, kept]]) / weight

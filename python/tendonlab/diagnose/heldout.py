@@ -9,7 +9,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.diagnose.case import Case
-from tendonlab.diagnose.fits import BLOCK, block_index
+from tendonlab.diagnose.fits import BLOCK, Fitted, block_index
 from tendonlab.diagnose.floor import Floor, started
 from tendonlab.system import System
 
@@ -21,19 +21,26 @@ NUM_BOOTSTRAP = 1000
 class Replayed:
     """One model on some experiments: residuals (outputs, samples) and outputs of each."""
 
-    system: System
+    systems: tuple[System, ...]
     residuals: tuple[np.ndarray, ...]
     outputs: tuple[np.ndarray, ...]
 
 
-def replay(case: Case, system: System, experiments: Sequence[int]) -> Replayed:
-    """Replay `system` on whole experiments, each from an initial state estimated on its first 0.2 s."""
+def models(case: Case, fitted: Fitted, experiments: Sequence[int]) -> list[System]:
+    """The model to replay each experiment with: as fitted; where nothing is held out, without it."""
+    if case.test:
+        return [fitted.system] * len(experiments)
+    return [fitted.without(case.train.index(i)) for i in experiments]
+
+
+def replay(case: Case, systems: Sequence[System], experiments: Sequence[int]) -> Replayed:
+    """Replay a model on each of some whole experiments, from an initial state estimated on its first 0.2 s."""
     outputs = []
-    for i in experiments:
+    for system, i in zip(systems, experiments, strict=True):
         run = _core.simulate(system.kind, *case.at(i, system), initial_state(case, system, i), [], case.settings)
         outputs.append(run["outputs"])
     residuals = tuple(o - case.prepared[i].measured for o, i in zip(outputs, experiments, strict=True))
-    return Replayed(system, residuals, tuple(outputs))
+    return Replayed(tuple(systems), residuals, tuple(outputs))
 
 
 def initial_state(case: Case, system: System, i: int) -> _core.Experiment:
@@ -59,7 +66,7 @@ def initial_state(case: Case, system: System, i: int) -> _core.Experiment:
 
 
 def mean_squares(case: Case, of: Replayed, experiments: Sequence[int]) -> list[np.ndarray]:
-    """Mean square of each output over contiguous blocks of at least 2 s, as rows (blocks, outputs), one array an experiment."""
+    """Mean square of each output over blocks of at least 2 s, an array (blocks, outputs) an experiment."""
     rows = []
     for residual, i in zip(of.residuals, experiments, strict=True):
         time = np.asarray(case.experiments[i].time)
@@ -87,7 +94,7 @@ def gap(mean_square: np.ndarray, floor: np.ndarray) -> float:
 def shrinkage(
     case: Case, before: Replayed, after: Replayed, floor: Floor, experiments: Sequence[int], rng: np.random.Generator
 ) -> dict[str, object]:
-    """1 - gap after / gap before, with a 95 % interval from a bootstrap over blocks. The value is None for a gap of 0."""
+    """1 - gap after / gap before, with a 95 % interval from a bootstrap over blocks; None for a gap of 0."""
     a = np.concatenate(mean_squares(case, before, experiments))
     b = np.concatenate(mean_squares(case, after, experiments))
     value = _shrinkage(a, b, floor.rms)
@@ -105,7 +112,12 @@ def _shrinkage(before: np.ndarray, after: np.ndarray, floor: np.ndarray) -> floa
 
 
 def predictive_gain(
-    case: Case, whitening: Sequence[_core.Whitening], floor: Floor, before: Replayed, after: Replayed, experiments: Sequence[int]
+    case: Case,
+    whitening: Sequence[_core.Whitening],
+    floor: Floor,
+    before: Replayed,
+    after: Replayed,
+    experiments: Sequence[int],
 ) -> dict[str, float]:
     """Nats of predictive log score that `after` gains over `before`, and its standard error over blocks of 2 s."""
     gains: list[float] = []

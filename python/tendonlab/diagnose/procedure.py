@@ -24,6 +24,8 @@ from tendonlab.diagnose.search import search
 from tendonlab.errors import ParameterError
 from tendonlab.system import System
 
+ROUGH = 8  # iterations of the first fit, of which only the residuals are used
+
 log = logging.getLogger("tendonlab")
 
 
@@ -38,14 +40,14 @@ def diagnose(
     """Say where the gap between `system` (the dataset's own simulator unless given) and the logs lies, which unmodelled
     effect causes it, and how far the gap shrinks on held-out experiments once it is added.
 
-    `library`: "default", every effect that the system takes, or names such as "joint:stribeck". `seed`: of the bootstrap.
+    `library`: "default", every effect that the system takes, or names as "joint:stribeck". `seed`: the bootstrap's.
     Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect.
     Ctrl-C stops it. Source: DIAGNOSIS section 2."""
     began = time.monotonic()
     names = _library(dataset, library)
     case = make_case(dataset, system)
     with _workers() as (pool, cancel):
-        first = _fitter(case, noise.white(case), cancel).fit(case.system)
+        first = _fitter(case, noise.white(case), cancel).fit(case.system, max_iterations=ROUGH)
         seen = _sensitivities(case, first, pool)
         floor = noise.estimate(case, seen, case.train)
         case = replace(case, settings=fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd))))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from tqdm import tqdm
 
+from tendonlab.diagnose.confirm import NEAR_FLOOR, confirmed
 from tendonlab.diagnose.fits import Fitted, Fitter
 from tendonlab.diagnose.screen import Lead, candidates, screen
 from tendonlab.errors import NumericalError, ParameterError
@@ -63,16 +64,26 @@ class Round:
 
 @dataclass(frozen=True)
 class Search:
-    """The rounds, and the model that came out."""
+    """The refitted simulator, the models that came of it effect by effect, and the rounds that chose them."""
 
     null: Fitted
-    best: Fitted
-    rounds: tuple[Round, ...] = field(default=())
+    steps: tuple[Fitted, ...]
+    rounds: tuple[Round, ...]
+
+    @property
+    def best(self) -> Fitted:
+        """The model that came out."""
+        return self.path[-1]
 
     @property
     def selected(self) -> tuple[str, ...]:
         """Effects established, in the order in which they were found."""
         return self.best.added
+
+    @property
+    def path(self) -> tuple[Fitted, ...]:
+        """The refitted simulator, and the model after each effect that was added."""
+        return (self.null, *self.steps)
 
 
 Renew = Callable[[Fitter, Fitted], tuple[Fitter, Fitted]]
@@ -89,7 +100,7 @@ def search(
 ) -> Search:
     """Add effects one at a time, as long as evidence and left-out experiments both ask for it. `renew` gives the fitter
     for the search beyond a model, and the model in its eyes."""
-    best, rounds = null, list[Round]()
+    best, steps, rounds = null, list[Fitted](), list[Round]()
     while len(rounds) < MAX_EFFECTS:
         one = _round(fitter, best, rounds, pool=pool, progress=progress, library=library)
         if one is None:
@@ -98,7 +109,8 @@ def search(
         if one.accepted is None:
             break
         fitter, best = renew(fitter, one.accepted.fitted)
-    return Search(null, best, tuple(rounds))
+        steps.append(best)
+    return Search(null, tuple(steps), tuple(rounds))
 
 
 def _round(
@@ -115,7 +127,9 @@ def _round(
         return None
     label = "effect" if not before else f"effect {len(before) + 1}"
     work = pool.map(lambda name: screen(fitter, best, name), names)
-    leads = sorted(tqdm(work, desc=f"screen {label}", total=len(names), disable=not progress, leave=False), key=lambda x: -x.gain)
+    leads = sorted(
+        tqdm(work, desc=f"screen {label}", total=len(names), disable=not progress, leave=False), key=lambda x: -x.gain
+    )
     bar = _bar(fitter, before)
     chosen = [x for x in leads if x.gain > HOPEFUL * bar.evidence][: NUM_REFIT_AGAIN if before else NUM_REFIT]
     first = _refit(fitter, best, chosen[0], rival=None) if chosen else []
@@ -126,8 +140,13 @@ def _round(
         trials += found
     trials.sort(key=lambda t: -t.evidence_gain)
     temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
-    accepted = next((t for t in trials[:1] if bar.passed(t)), None)
-    return Round(tuple(leads), tuple(trials), _probabilities(trials, bar, temperature), accepted, temperature)
+    passed = {t.effect for t in trials if bar.passed(t)}
+    doubtful = bool(before) or best.mean_square < NEAR_FLOOR
+    if trials and trials[0].effect in passed and doubtful and not confirmed(fitter, best, trials[0].fitted):
+        passed = set()
+    accepted = trials[0] if trials and trials[0].effect in passed else None
+    probability = _probabilities(trials, passed, bar, temperature)
+    return Round(tuple(leads), tuple(trials), probability, accepted, temperature)
 
 
 def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> list[Trial]:
@@ -164,12 +183,12 @@ def _bar(fitter: Fitter, before: Sequence[Round]) -> Bar:
     return Bar(max(AGAIN_EVIDENCE, AGAIN_SHARE * first.evidence_gain), AGAIN_LEFT_OUT, 2.0)
 
 
-def _probabilities(trials: Sequence[Trial], bar: Bar, temperature: float) -> dict[str | None, float]:
+def _probabilities(trials: Sequence[Trial], passed: Set[str], bar: Bar, temperature: float) -> dict[str | None, float]:
     """Tempered evidence: over-confident evidence is divided by a temperature. None stands for no (further) effect;
     what is not established ranks clearly behind it."""
     gains: dict[str | None, float] = {None: bar.evidence}
     for t in trials:
-        most = np.inf if bar.passed(t) else bar.evidence - UNCONFIRMED * temperature
+        most = np.inf if t.effect in passed else bar.evidence - UNCONFIRMED * temperature
         gains[t.effect] = min(t.evidence_gain, most)
     top = max(gains.values())
     weights = {name: float(np.exp((g - top) / temperature)) for name, g in gains.items()}

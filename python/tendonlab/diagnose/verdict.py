@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from tendonlab.diagnose.confirm import NEAR_FLOOR
 from tendonlab.diagnose.floor import Floor
 from tendonlab.diagnose.search import Round, Search
 
-NO_GAP, NO_EFFECT = 1.15, 1.3  # whitened mean squares below which the nominal, the refitted simulator is at the floor
+NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 EXPLAINED = 0.85  # share of the held-out excess that library effects must remove to be the whole answer
 SOFT, SAME_GROUP = 0.05, 0.2
 
@@ -31,11 +32,13 @@ def decide(found: Search, *, nominal: float, explained: float | None, floor: Flo
     """`nominal`: mean square over the floor at the untouched simulator (whitened, or plain where nothing repeats).
     `explained`: share of the held-out excess that the selected effects remove, None where there is none."""
     at_floor = nominal < NO_GAP
-    refitted_at_floor = found.null.mean_square < NO_EFFECT or not floor.repeated
+    refitted_at_floor = found.null.mean_square < NEAR_FLOOR or not floor.repeated
     none = found.rounds[0].probability[None] if found.rounds else 1.0
     weight = {
         "no_gap": _step(NO_GAP - nominal) * (1.0 if not found.selected else none),
-        "parameters_only": _step(nominal - NO_GAP) * none * _step((NO_EFFECT - found.null.mean_square) if floor.repeated else SOFT),
+        "parameters_only": _step(nominal - NO_GAP)
+        * none
+        * _step((NEAR_FLOOR - found.null.mean_square) if floor.repeated else SOFT),
         "effect": (1.0 - none) * (_step((explained or 0.0) - EXPLAINED) if found.selected else 0.1),
         "unknown_effect": (1.0 - none) * (_step(EXPLAINED - (explained or 0.0)) if found.selected else 0.5)
         + (0.0 if refitted_at_floor else none),

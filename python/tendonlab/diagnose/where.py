@@ -20,8 +20,18 @@ COORDINATES = {"velocity": "flow", "position": "displacement", "load": "effort"}
 
 def signals(case: Case, of: Replayed, floor: Floor) -> list[dict[str, Any]]:
     """Share of each output in the excess mean square over the floor, largest first."""
-    square = np.array([np.nanmean(np.square(row)) if np.isfinite(row).any() else np.nan for row in np.concatenate(of.residuals, axis=1)])
-    excess = np.array([max(0.0, square[c] / floor.rms[c] ** 2 - 1.0) if np.isfinite(floor.rms[c]) else 0.0 for c in range(len(square))])
+    square = np.array(
+        [
+            np.nanmean(np.square(row)) if np.isfinite(row).any() else np.nan
+            for row in np.concatenate(of.residuals, axis=1)
+        ]
+    )
+    excess = np.array(
+        [
+            max(0.0, square[c] / floor.rms[c] ** 2 - 1.0) if np.isfinite(floor.rms[c]) else 0.0
+            for c in range(len(square))
+        ]
+    )
     total = float(excess.sum())
     rows = [{"signal": case.outputs[c], "share": float(excess[c] / total) if total > 0 else 0.0} for c in case.measured]
     return sorted(rows, key=lambda r: -float(r["share"]))
@@ -37,28 +47,34 @@ def elements(probability: Mapping[str, float], case: Case) -> list[dict[str, Any
 
 
 class PortRecords:
-    """What the ports of a model did in some experiments, and the excess of a replay's residuals at the same instants."""
+    """What the ports of a model did in some experiments, sample by sample."""
 
     def __init__(self, case: Case, of: Replayed, experiments: Sequence[int]) -> None:
         settings = _core.Settings(tolerance=1e-5, position_scale=case.prepared[0].position_scale,
                                   velocity_scale=case.prepared[0].velocity_scale, ports=True)  # fmt: skip
-        runs = [
-            _core.simulate(of.system.kind, *case.at(i, of.system), initial_state(case, of.system, i), [], settings)["ports"]
-            for i in experiments
-        ]
+        runs = []
+        for system, i in zip(of.systems, experiments, strict=True):
+            start = initial_state(case, system, i)
+            runs.append(_core.simulate(system.kind, *case.at(i, system), start, [], settings)["ports"])
         self.case = case
         self.ports = np.concatenate(runs, axis=2)
         self.time = np.concatenate([np.asarray(case.experiments[i].time) for i in experiments])
 
     def coordinate(self, port: str, quantity: str) -> np.ndarray:
         """Samples of one quantity at one port."""
-        return np.asarray(self.ports[self.case.system.info.ports.index(port), ("velocity", "position", "load", "force").index(quantity)])
+        return np.asarray(
+            self.ports[
+                self.case.system.info.ports.index(port), ("velocity", "position", "load", "force").index(quantity)
+            ]
+        )
 
 
 def excess(case: Case, of: Replayed, floor: Floor) -> np.ndarray:
     """Mean over outputs of (residual / floor)², minus one, at each sample of all experiments together."""
     together = np.concatenate(of.residuals, axis=1)[case.measured]
-    return np.asarray(np.nan_to_num(np.nanmean(np.square(together / floor.rms[case.measured, None]), axis=0), nan=1.0) - 1.0)
+    return np.asarray(
+        np.nan_to_num(np.nanmean(np.square(together / floor.rms[case.measured, None]), axis=0), nan=1.0) - 1.0
+    )
 
 
 def regimes(case: Case, of: Replayed, floor: Floor, records: PortRecords) -> list[dict[str, Any]]:
@@ -98,8 +114,10 @@ def _regime(name: str, x: np.ndarray, e: np.ndarray, shifts: np.ndarray) -> dict
     }
 
 
-def maps(case: Case, refitted: Replayed, improved: Replayed, floor: Floor, records: PortRecords) -> tuple[WhereMap, ...]:
-    """Residual over the floor in cells of velocity × load (position where no load varies), one map a frictional port."""
+def maps(
+    case: Case, refitted: Replayed, improved: Replayed, floor: Floor, records: PortRecords
+) -> tuple[WhereMap, ...]:
+    """Residual over the floor in cells of velocity × load (position where no load varies), one a port."""
     before = np.sqrt(np.maximum(excess(case, refitted, floor) + 1.0, 0.0))
     after = np.sqrt(np.maximum(excess(case, improved, floor) + 1.0, 0.0))
     found = []
@@ -112,10 +130,16 @@ def maps(case: Case, refitted: Replayed, improved: Replayed, floor: Floor, recor
         x_edges, y_edges = _edges(x), _edges(y)
         found.append(
             WhereMap(
-                element=port, x=f"{port}_velocity", x_unit=unit("flow", case.system.axis), x_edges=x_edges,
-                y=f"{port}_{quantity}", y_unit=unit(COORDINATES[quantity], case.system.axis), y_edges=y_edges,
-                refitted=_cells(x, y, before, x_edges, y_edges), with_effect=_cells(x, y, after, x_edges, y_edges),
-            )  # fmt: skip
+                element=port,
+                x=f"{port}_velocity",
+                x_unit=unit("flow", case.system.axis),
+                x_edges=x_edges,
+                y=f"{port}_{quantity}",
+                y_unit=unit(COORDINATES[quantity], case.system.axis),
+                y_edges=y_edges,
+                refitted=_cells(x, y, before, x_edges, y_edges),
+                with_effect=_cells(x, y, after, x_edges, y_edges),
+            )
         )
     return tuple(found)
 
@@ -130,4 +154,4 @@ def _edges(x: np.ndarray) -> np.ndarray:
 def _cells(x: np.ndarray, y: np.ndarray, r: np.ndarray, x_edges: np.ndarray, y_edges: np.ndarray) -> np.ndarray:
     count, _, _ = np.histogram2d(y, x, [y_edges, x_edges])
     total, _, _ = np.histogram2d(y, x, [y_edges, x_edges], weights=r**2)
-    return np.sqrt(np.divide(total, count, out=np.full_like(total, np.nan), where=count > 0))
+    return np.asarray(np.sqrt(np.divide(total, count, out=np.full_like(total, np.nan), where=count > 0)))
