@@ -133,6 +133,7 @@ class Task:
         added: Mapping[int, float] = ...,
         initial: Sequence[tuple[str, int]] = ...,
         initial_sd: Sequence[float] = ...,
+        scatter: Sequence[tuple[Sequence[int], float]] = ...,
     ) -> None: ...
     def rows(self) -> int: ...
 

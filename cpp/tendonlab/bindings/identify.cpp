@@ -43,7 +43,8 @@ Eigen::MatrixXd apply_many(const Whitening& whitening, const Array& many) {
 
 Task make_task(const integrate::Experiment& experiment, std::shared_ptr<Whitening> whitening,
                const std::map<std::size_t, double>& fixed, const std::map<std::size_t, double>& added,
-               const std::vector<std::pair<std::string, int>>& initial, const std::vector<double>& initial_sd) {
+               const std::vector<std::pair<std::string, int>>& initial, const std::vector<double>& initial_sd,
+               const std::vector<std::pair<std::vector<std::size_t>, double>>& scatter) {
   if (initial.size() != initial_sd.size())
     throw ParameterError(
         sentence(initial_sd.size(), " initial_sd: expected ", initial.size(), ", one an initial state"));
@@ -51,9 +52,11 @@ Task make_task(const integrate::Experiment& experiment, std::shared_ptr<Whitenin
             std::move(whitening),
             Conditions(fixed.begin(), fixed.end()),
             Conditions(added.begin(), added.end()),
+            {},
             {}};
   const auto seeds = make_seeds(initial);
   for (std::size_t k = 0; k < seeds.size(); ++k) task.initial.push_back({seeds[k], initial_sd[k]});
+  for (const auto& [parameters, sd] : scatter) task.scatter.push_back({parameters, sd});
   return task;
 }
 
@@ -122,11 +125,13 @@ void bind_problem(py::module_& module) {
       module, "Task",
       "One experiment of a fit: fixed {parameter index: value there}, added {parameter index: by how much it is\n"
       "larger there}; initial: free states [(\"position\" | \"velocity\", axis)], initial_sd: their prior standard\n"
-      "deviations about the experiment's own initial state.")
+      "deviations about the experiment's own initial state; scatter [([parameter indices], sd)]: parameters that\n"
+      "differ there by a common factor, sd of its logarithm.")
       .def(py::init(&make_task), py::arg("experiment"), py::arg("whitening"), py::kw_only(),
            py::arg("fixed") = std::map<std::size_t, double>(), py::arg("added") = std::map<std::size_t, double>(),
            py::arg("initial") = std::vector<std::pair<std::string, int>>(),
-           py::arg("initial_sd") = std::vector<double>())
+           py::arg("initial_sd") = std::vector<double>(),
+           py::arg("scatter") = std::vector<std::pair<std::vector<std::size_t>, double>>())
       .def(
           "rows", [](const Task& task) { return task.whitening->rows(); }, "Number of its residuals.");
   py::class_<Free>(
@@ -164,9 +169,8 @@ void bind_identify(py::module_& module) {
       },
       py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("tasks"), py::arg("free"), py::arg("settings"),
       py::kw_only(), py::arg("initial") = std::vector<std::vector<double>>(),
-      "What `fit` returns, at the start and unsolved. `initial`: values of the free states, a list a task (default: "
-      "the\n"
-      "experiments' own).");
+      "What `fit` returns, at the start and unsolved. `initial`: values of the free states and logarithms of the\n"
+      "factors, a list a task (default: their prior means).");
   module.def(
       "fit",
       [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
@@ -181,7 +185,8 @@ void bind_identify(py::module_& module) {
       py::kw_only(), py::arg("initial") = std::vector<std::vector<double>>(), py::arg("max_iterations") = 50,
       py::arg("tolerance") = 1e-8, py::arg("cancel").none(true) = py::none(),
       "Minimises half the sum of squared whitened residuals and priors. Returns a dict: values (all parameters), x\n"
-      "(coordinates of the free ones), initial (free states, a list a task), cost, prior_cost, converged, message,\n"
+      "(coordinates of the free ones), initial (free states, logarithms of factors, a list a task), cost, prior_cost, "
+      "converged, message,\n"
       "iterations, at_bound; per task: residuals (rows,), jacobian (rows, free) by x, jacobian_initial (rows, states) "
       "by\n"
       "(state - prior mean) / sd. Raises NumericalError if a simulation fails at the start.");

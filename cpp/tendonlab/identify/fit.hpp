@@ -28,17 +28,26 @@ struct FreeState {
   double sd;  ///< m (rad) or m/s (rad/s), finite; the coordinate is (value - prior mean) / sd
 };
 
-/// One experiment of the fit. Conditions: parameters `fixed` there, or larger there by what is `added`.
+/// Parameters that differ by a common factor from run to run, exp(sd z): friction is never twice the same.
+struct Scatter {
+  std::vector<std::size_t> parameters;
+  double sd;  ///< of the factor's logarithm, finite; the coordinate is logarithm / sd
+};
+
+/// One experiment of the fit. Conditions: parameters `fixed` there, or larger there by what is `added`. Its own
+/// unknowns: the free states, then the factors.
 struct Task {
   std::shared_ptr<const integrate::Experiment> experiment;
   std::shared_ptr<const Whitening> whitening;
   std::vector<std::pair<std::size_t, double>> fixed, added;
   std::vector<FreeState> initial;
+  std::vector<Scatter> scatter;
 };
 
 using Cancel = std::atomic<bool>;
 
-/// What is fitted. `initial`: starting values of the free states, a list a task; empty: the experiments' own.
+/// What is fitted. `initial`: starting values of each task's own unknowns, states and logarithms of factors; empty:
+/// their prior means.
 struct Problem {
   const Model& model;
   Configuration configuration;
@@ -60,7 +69,7 @@ struct Linearised {
 };
 struct Result {
   std::vector<double> values, x;             ///< all parameters; coordinates of the free ones
-  std::vector<std::vector<double>> initial;  ///< free states, a list a task
+  std::vector<std::vector<double>> initial;  ///< own unknowns, a list a task
   double cost = 0, prior_cost = 0;           ///< half the sum of squares, priors included; the priors' part
   bool converged = false;
   std::string message;

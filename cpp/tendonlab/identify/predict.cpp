@@ -29,6 +29,12 @@ void require_sound(const Problem& problem, const Task& task) {
       throw ParameterError(sentence("initial state ", state.seed.index, ": expected a position or velocity of one of ",
                                     info.dof, " degrees of freedom"));
   }
+  for (const Scatter& group : task.scatter) {
+    require_within("sd of scatter", group.sd, 1e-300, 10.0, "");
+    for (const std::size_t index : group.parameters)
+      if (index >= info.parameters.size())
+        throw ParameterError(sentence("scatter of parameter ", index, ": expected less than ", info.parameters.size()));
+  }
 }
 bool fixes(const Task& task, std::size_t index) {
   for (const auto& condition : task.fixed)
@@ -42,37 +48,63 @@ double& component(integrate::Experiment& of, const integrate::Seed& seed) {
 
 Prediction::Prediction(const Problem& of, std::size_t index) : problem(of), task(of.tasks[index]) {
   require_sound(problem, task);
+  const auto differentiate = [&](std::size_t parameter) {
+    column_of.emplace_back(parameter, static_cast<Eigen::Index>(seeds.size()));
+    seeds.push_back({Of::parameter, static_cast<int>(parameter)});
+  };
   for (std::size_t k = 0; k < problem.free.size(); ++k)
     if (!fixes(task, problem.free[k].index)) {
       moving.push_back(k);
-      seeds.push_back({Of::parameter, static_cast<int>(problem.free[k].index)});
+      differentiate(problem.free[k].index);
     }
   for (const FreeState& state : task.initial) seeds.push_back(state.seed);
+  for (const Scatter& group : task.scatter)
+    for (const std::size_t parameter : group.parameters)
+      if (column(parameter) < 0) differentiate(parameter);
 }
 
-double Prediction::prior_mean(const FreeState& state) const {
-  const auto& from = state.seed.of == Of::position ? task.experiment->position : task.experiment->velocity;
-  return from[static_cast<std::size_t>(state.seed.index)];
+Eigen::Index Prediction::column(std::size_t parameter) const {
+  for (const auto& [known, at] : column_of)
+    if (known == parameter) return at;
+  return -1;
+}
+double Prediction::prior_mean(std::size_t own) const {
+  if (own >= task.initial.size()) return 0.0;
+  const integrate::Seed& seed = task.initial[own].seed;
+  const auto& from = seed.of == Of::position ? task.experiment->position : task.experiment->velocity;
+  return from[static_cast<std::size_t>(seed.index)];
+}
+double Prediction::prior_sd(std::size_t own) const {
+  return own < task.initial.size() ? task.initial[own].sd : task.scatter[own - task.initial.size()].sd;
 }
 std::vector<double> Prediction::states(const Eigen::VectorXd& z) const {
   std::vector<double> all;
-  for (std::size_t k = 0; k < task.initial.size(); ++k)
-    all.push_back(prior_mean(task.initial[k]) + task.initial[k].sd * z(static_cast<Eigen::Index>(k)));
+  for (Eigen::Index k = 0; k < num_initial(); ++k) {
+    const auto own = static_cast<std::size_t>(k);
+    all.push_back(prior_mean(own) + prior_sd(own) * z(k));
+  }
   return all;
 }
 Eigen::VectorXd Prediction::coordinates(const std::vector<double>& states) const {
-  if (states.size() != task.initial.size())
-    throw ParameterError(
-        sentence(states.size(), " initial states: expected ", task.initial.size(), ", as the task frees"));
   Eigen::VectorXd z(num_initial());
+  if (static_cast<Eigen::Index>(states.size()) != z.size())
+    throw ParameterError(sentence(states.size(), " initial values: expected ", z.size(),
+                                  ", the states and factors that the task frees"));
   for (std::size_t k = 0; k < states.size(); ++k) {
-    require_within("initial state", states[k], -1e300, 1e300, "");
-    z(static_cast<Eigen::Index>(k)) = (states[k] - prior_mean(task.initial[k])) / task.initial[k].sd;
+    require_within("initial value", states[k], -1e300, 1e300, "");
+    z(static_cast<Eigen::Index>(k)) = (states[k] - prior_mean(k)) / prior_sd(k);
   }
   return z;
 }
 
-Configuration Prediction::configuration_at(const Eigen::VectorXd& x) const {
+double Prediction::factor(std::size_t parameter, const Eigen::VectorXd& z) const {
+  double logarithm = 0;
+  for (std::size_t g = 0; g < task.scatter.size(); ++g)
+    for (const std::size_t one : task.scatter[g].parameters)
+      if (one == parameter) logarithm += task.scatter[g].sd * z(static_cast<Eigen::Index>(task.initial.size() + g));
+  return std::exp(logarithm);
+}
+Configuration Prediction::configuration_at(const Eigen::VectorXd& x, const Eigen::VectorXd& z) const {
   Configuration with = problem.configuration;
   for (Eigen::Index k = 0; k < num_free(); ++k) {
     const Free& free = problem.free[static_cast<std::size_t>(k)];
@@ -81,14 +113,16 @@ Configuration Prediction::configuration_at(const Eigen::VectorXd& x) const {
   for (const auto& [index, value] : task.fixed) with.values[index] = value;
   for (const auto& [index, value] : task.added) with.values[index] += value;
   const auto& parameters = problem.model.info().parameters;
-  for (std::size_t i = 0; i < with.values.size(); ++i)
+  for (std::size_t i = 0; i < with.values.size(); ++i) {
+    if (!task.scatter.empty()) with.values[i] *= factor(i, z);
     require_within(parameters[i].name, with.values[i], parameters[i].lower, parameters[i].upper, "");
+  }
   return with;
 }
 integrate::Experiment Prediction::experiment_at(const Eigen::VectorXd& z) const {
   integrate::Experiment experiment = *task.experiment;
   const auto wanted = states(z);
-  for (std::size_t k = 0; k < wanted.size(); ++k) component(experiment, task.initial[k].seed) = wanted[k];
+  for (std::size_t k = 0; k < task.initial.size(); ++k) component(experiment, task.initial[k].seed) = wanted[k];
   return experiment;
 }
 
@@ -104,7 +138,8 @@ Eigen::MatrixXd Prediction::whitened_gradient(const integrate::Trajectory& run) 
 }
 
 Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) const {
-  const auto run = problem.model.simulate(configuration_at(x), experiment_at(z),
+  const Configuration with = configuration_at(x, z);
+  const auto run = problem.model.simulate(with, experiment_at(z),
                                           with_derivatives ? seeds : std::vector<integrate::Seed>(), problem.settings);
   Linearised out;
   out.residual = task.whitening->residual(Eigen::Map<const RowMatrix>(run.value.data(), run.channels, run.samples));
@@ -112,13 +147,21 @@ Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bo
     const Eigen::MatrixXd gradient = whitened_gradient(run);
     out.by_free = RowMatrix::Zero(out.residual.size(), num_free());
     out.by_initial.resize(out.residual.size(), num_initial());
-    Eigen::Index column = 0;
-    for (const std::size_t k : moving) {
-      const auto to = static_cast<Eigen::Index>(k);
-      out.by_free.col(to) = problem.free[k].slope(x(to)) * gradient.col(column++);
+    const auto num_moving = static_cast<Eigen::Index>(moving.size());
+    for (Eigen::Index c = 0; c < num_moving; ++c) {
+      const auto k = static_cast<Eigen::Index>(moving[static_cast<std::size_t>(c)]);
+      const Free& free = problem.free[static_cast<std::size_t>(k)];
+      out.by_free.col(k) = free.slope(x(k)) * factor(free.index, z) * gradient.col(c);
     }
-    for (Eigen::Index k = 0; k < num_initial(); ++k)
-      out.by_initial.col(k) = task.initial[static_cast<std::size_t>(k)].sd * gradient.col(column++);
+    const auto num_states = static_cast<Eigen::Index>(task.initial.size());
+    for (Eigen::Index k = 0; k < num_states; ++k)
+      out.by_initial.col(k) = task.initial[static_cast<std::size_t>(k)].sd * gradient.col(num_moving + k);
+    for (std::size_t g = 0; g < task.scatter.size(); ++g) {
+      auto by_factor = out.by_initial.col(num_states + static_cast<Eigen::Index>(g));
+      by_factor.setZero();
+      for (const std::size_t p : task.scatter[g].parameters)
+        by_factor += task.scatter[g].sd * with.values[p] * gradient.col(column(p));
+    }
   }
   if (!out.residual.allFinite() || !out.by_free.allFinite() || !out.by_initial.allFinite())
     throw NumericalError(sentence(problem.model.info().kind,

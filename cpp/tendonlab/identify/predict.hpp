@@ -9,21 +9,28 @@ class Prediction {
   /// Throws ParameterError where the task does not fit its model or its whitening. `problem` must outlive this.
   Prediction(const Problem& problem, std::size_t task);
   Eigen::Index num_free() const { return static_cast<Eigen::Index>(problem.free.size()); }
-  Eigen::Index num_initial() const { return static_cast<Eigen::Index>(task.initial.size()); }
-  /// At the coordinates x of the free parameters and z of the free states. Throws NumericalError, ParameterError.
+  Eigen::Index num_initial() const { return static_cast<Eigen::Index>(task.initial.size() + task.scatter.size()); }
+  /// At the coordinates x of the free parameters and z of the task's own unknowns. Throws NumericalError,
+  /// ParameterError.
   Linearised at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) const;
   std::vector<double> states(const Eigen::VectorXd& z) const;
   Eigen::VectorXd coordinates(const std::vector<double>& states) const;
 
  private:
-  double prior_mean(const FreeState& state) const;
-  Configuration configuration_at(const Eigen::VectorXd& x) const;
+  /// Where the gradient of a parameter stands among the seeds; -1: it is not differentiated.
+  Eigen::Index column(std::size_t parameter) const;
+  double prior_mean(std::size_t own) const;
+  double prior_sd(std::size_t own) const;
+  /// The factor by which run-to-run scatter changes a parameter.
+  double factor(std::size_t parameter, const Eigen::VectorXd& z) const;
+  Configuration configuration_at(const Eigen::VectorXd& x, const Eigen::VectorXd& z) const;
   integrate::Experiment experiment_at(const Eigen::VectorXd& z) const;
   Eigen::MatrixXd whitened_gradient(const integrate::Trajectory& run) const;
 
   const Problem& problem;
   const Task& task;
-  std::vector<std::size_t> moving;  ///< free parameters that no condition fixes here
-  std::vector<integrate::Seed> seeds;
+  std::vector<std::size_t> moving;     ///< free parameters that no condition fixes here
+  std::vector<integrate::Seed> seeds;  ///< of the moving parameters, the states, other scattered ones
+  std::vector<std::pair<std::size_t, Eigen::Index>> column_of;  ///< of each parameter that is differentiated
 };
 }  // namespace tendonlab::identify

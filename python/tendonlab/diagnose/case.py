@@ -21,7 +21,10 @@ NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may
 
 @dataclass(frozen=True)
 class Case:
-    """A dataset made ready. `noise` is the sd of each output's white noise, NaN where it was not measured."""
+    """A dataset made ready. `noise` is the sd of each output's white noise, NaN where it was not measured. `scatter`:
+    groups of parameters that differ by a common factor from run to run, and the sd of its logarithm.
+
+    Each experiment has unknowns of its own: the free parts of its initial state, then the logarithms of the factors."""
 
     dataset: Dataset
     system: System
@@ -31,6 +34,7 @@ class Case:
     noise: np.ndarray
     scales: Mapping[str, Scale]
     settings: _core.Settings
+    scatter: tuple[tuple[tuple[int, ...], float], ...] = ()
 
     @property
     def train(self) -> tuple[int, ...]:
@@ -58,8 +62,17 @@ class Case:
         """Indices of the outputs that were measured."""
         return [c for c in range(len(self.noise)) if np.isfinite(self.noise[c])]
 
-    def at(self, i: int, system: System) -> tuple[list[float], list[bool]]:
-        """Values and flags for the core in experiment i: its conditions hold there, its payload is added."""
+    def own_mean(self, i: int) -> np.ndarray:
+        """Prior means of the unknowns of experiment i."""
+        return np.concatenate([self.prepared[i].initial_mean, np.zeros(len(self.scatter))])
+
+    def own_sd(self, i: int) -> np.ndarray:
+        """Prior sd of the unknowns of experiment i."""
+        return np.array([*self.prepared[i].initial_sd, *(sd for _, sd in self.scatter)])
+
+    def at(self, i: int, system: System, own: Sequence[float] = ()) -> tuple[list[float], list[bool]]:
+        """Values and flags for the core in experiment i, with its `own` unknowns (default: their means): its conditions
+        hold there, its payload is added."""
         values = system.values()
         names = [p.name for p in system.info.parameters]
         for name, added in self.experiments[i].add.items():
@@ -67,6 +80,9 @@ class Case:
         for name, known in self.experiments[i].conditions.items():
             if name in system.parameters:
                 values[names.index(name)] = known
+        for (group, _), logarithm in zip(self.scatter, own[len(self.prepared[i].initial) :], strict=False):
+            for k in group:
+                values[k] *= float(np.exp(logarithm))
         return values, system.active(keep_zero=False)
 
     def task(self, i: int, whitening: _core.Whitening) -> _core.Task:
@@ -78,6 +94,7 @@ class Case:
             fixed={names.index(n): v for n, v in experiment.conditions.items() if n in self.system.parameters},
             added={names.index(n): v for n, v in experiment.add.items()},
             initial=list(ready.initial), initial_sd=list(ready.initial_sd),
+            scatter=[(list(group), sd) for group, sd in self.scatter],
         )  # fmt: skip
 
 

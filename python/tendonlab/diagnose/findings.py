@@ -12,6 +12,7 @@ from tendonlab.diagnose.fits import Fitter
 from tendonlab.diagnose.heldout import Replayed
 from tendonlab.diagnose.result import EffectFinding
 from tendonlab.diagnose.search import Search, Trial
+from tendonlab.errors import NumericalError
 
 
 def findings(
@@ -53,7 +54,10 @@ def _telling_trials(found: Search) -> dict[str, Trial]:
 
 def _numbers(fitter: Fitter, trial: Trial, refitted: Replayed, judged: Sequence[int], seed: int) -> dict[str, Any]:
     case, floor = fitter.case, fitter.floor
-    replayed = heldout.replay(case, heldout.models(case, trial.fitted, judged), judged)
+    try:
+        replayed = heldout.replay(case, heldout.models(case, trial.fitted, judged), judged)
+    except NumericalError:  # a candidate that the training experiments already speak against
+        return {"parameters": _parameters(trial)}
     rng = np.random.default_rng(seed)
     return {
         "parameters": _parameters(trial),

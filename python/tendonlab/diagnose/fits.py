@@ -141,10 +141,12 @@ class Fitter:
         initial: Sequence[Sequence[float]] = (),
         max_iterations: int = 25,
         solve: bool = True,
+        known: bool = False,
     ) -> Fitted:
-        """Fit `system` from its own values, with priors about the nominal ones. `solve` False: only linearise there."""
+        """Fit `system` from its own values, with priors about the nominal ones, and the `initial` unknowns of each
+        experiment. `solve` False: only linearise there. `known`: fit those unknowns alone."""
         case = self.case
-        rows = free_parameters(system, case.dataset.parameters, case.scales, added=added)
+        rows = [] if known else free_parameters(system, case.dataset.parameters, case.scales, added=added)
         free = [f.started(system.parameters[f.name]) for f in rows]
         tasks = [case.task(i, self.whitening[i]) for i in case.train]
         arguments = (
@@ -167,9 +169,8 @@ class Fitter:
         states = []
         volume = 0.0
         for t, i in enumerate(self.case.train):
-            ready = self.case.prepared[i]
             k = found["jacobian_initial"][t]
-            z = (np.array(found["initial"][t]) - ready.initial_mean) / np.array(ready.initial_sd)
+            z = (np.array(found["initial"][t]) - self.case.own_mean(i)) / self.case.own_sd(i)
             states.append((k, z))
             volume += float(np.linalg.slogdet(np.eye(k.shape[1]) + k.T @ k)[1])
             rows = self.rows(states[t], t, found["residuals"][t])

@@ -68,12 +68,12 @@ def friction_groups(system: System) -> list[list[int]]:
     return groups
 
 
-def sensitivities(case: Case, system: System, i: int, initial: Sequence[float]) -> Sensitivities:
-    """Residual and directions of experiment i at `system`, started from `initial` (the free parts of its state)."""
+def sensitivities(case: Case, system: System, i: int, own: Sequence[float]) -> Sensitivities:
+    """Residual and directions of experiment i at `system`, with its own unknowns."""
     groups, ready = friction_groups(system), case.prepared[i]
     seeds = [("parameter", k) for group in groups for k in group] + list(ready.initial)
-    values, active = case.at(i, system)
-    experiment = started(case, i, initial)
+    values, active = case.at(i, system, own)
+    experiment = started(case, i, own)
     run = _core.simulate(system.kind, values, active, experiment, seeds, case.settings)
     gradient = run.get("gradient", np.zeros((0, *ready.measured.shape)))
     rows, directions = 0, []
@@ -87,11 +87,11 @@ def sensitivities(case: Case, system: System, i: int, initial: Sequence[float]) 
     )
 
 
-def started(case: Case, i: int, initial: Sequence[float]) -> _core.Experiment:
-    """Experiment i from another initial state."""
+def started(case: Case, i: int, own: Sequence[float]) -> _core.Experiment:
+    """Experiment i from the initial state among its own unknowns."""
     core = case.prepared[i].core
     position, velocity = list(core.position), list(core.velocity)
-    for (of, axis), value in zip(case.prepared[i].initial, initial, strict=True):
+    for (of, axis), value in zip(case.prepared[i].initial, own, strict=False):
         (position if of == "position" else velocity)[axis] = value
     return core.started(position, velocity)
 
@@ -148,16 +148,16 @@ def integrated_time(record: np.ndarray) -> float:
 
 
 def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> list[_core.Whitening]:
-    """Whitening of every experiment by the autoregression and, where `seen`, run-to-run friction as a random effect."""
-    plain = [_core.Whitening(floor.ar, floor.sd, ready.measured) for ready in case.prepared]
-    if not seen or not len(seen[0].friction):
-        return plain
-    return [
-        _core.Whitening(
-            floor.ar, floor.sd, ready.measured, by_noise.apply_many(s.friction), [floor.tau] * len(s.friction)
-        )
-        for ready, by_noise, s in zip(case.prepared, plain, seen, strict=True)
-    ]
+    """Whitening of every experiment by the autoregression. Run-to-run friction is an unknown of its own in a fit; of an
+    experiment that nothing is fitted to, it is a random effect along what was `seen`."""
+    made = [_core.Whitening(floor.ar, floor.sd, ready.measured) for ready in case.prepared]
+    for i in case.test if seen else ():
+        if len(seen[i].friction):
+            directions = made[i].apply_many(seen[i].friction)
+            made[i] = _core.Whitening(
+                floor.ar, floor.sd, case.prepared[i].measured, directions, [floor.tau] * len(seen[i].friction)
+            )
+    return made
 
 
 def kept_samples(floor: Floor, measured: np.ndarray) -> list[np.ndarray]:

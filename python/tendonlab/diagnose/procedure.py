@@ -50,10 +50,13 @@ def diagnose(
         first = _fitter(case, noise.white(case), cancel).fit(case.system, max_iterations=ROUGH)
         seen = _sensitivities(case, first, pool)
         floor = noise.estimate(case, seen, case.train)
-        case = replace(case, settings=fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd))))
+        groups = tuple((tuple(group), floor.tau) for group in noise.friction_groups(case.system))
+        settings = fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd)))
+        case = replace(case, settings=settings, scatter=groups)
         fitter = _fitter(case, floor, cancel, seen)
-        nominal = fitter.fit(case.system, initial=first.initial, solve=False)
-        null = fitter.fit(first.system, initial=first.initial)
+        start = [[*states, *(0.0 for _ in groups)] for states in first.initial]
+        nominal = fitter.fit(case.system, initial=start, known=True)
+        null = fitter.fit(first.system, initial=start)
         renew = partial(_renewed, pool=pool)
         found = search(fitter, null, pool=pool, renew=renew, progress=progress, library=names)
         log.info("selected %s", found.selected)
@@ -81,7 +84,7 @@ def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list
     initial = dict(zip(case.train, fitted.initial, strict=True))
 
     def seen(i: int) -> Sensitivities:
-        start = initial.get(i, case.prepared[i].initial_mean.tolist())
+        start = initial.get(i, case.own_mean(i).tolist())
         return noise.sensitivities(case, fitted.system, i, start)
 
     return list(pool.map(seen, range(len(case.experiments))))

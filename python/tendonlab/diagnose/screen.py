@@ -127,6 +127,8 @@ def _whitened(fitter: Fitter, best: Fitted, values: dict[str, float], *, effect:
     case, system = fitter.case, best.system.with_effects({effect: values})
     blocks: list[np.ndarray] = []
     for t, i in enumerate(case.train):
-        run = _core.simulate(system.kind, *case.at(i, system), started(case, i, best.initial[t]), [], case.settings)
+        run = _core.simulate(
+            system.kind, *case.at(i, system, best.initial[t]), started(case, i, best.initial[t]), [], case.settings
+        )
         blocks += fitter.rows(best.states[t], t, fitter.whitening[i].residual(run["outputs"]))
     return blocks

@@ -20,6 +20,7 @@ AGAIN_EVIDENCE, AGAIN_LEFT_OUT, AGAIN_SHARE = 30.0, 9.0, 0.01
 MAX_EFFECTS = 3
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
+MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor
 HOPEFUL = 0.3  # of what an effect must gain, which the screen must promise for a refit
 SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5
@@ -141,12 +142,25 @@ def _round(
     trials.sort(key=lambda t: -t.evidence_gain)
     temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
     passed = {t.effect for t in trials if bar.passed(t)}
-    doubtful = bool(before) or best.mean_square < NEAR_FLOOR
-    if trials and trials[0].effect in passed and doubtful and not confirmed(fitter, best, trials[0].fitted):
+    if trials and trials[0].effect in passed and not _holds(fitter, best, trials[0], further=bool(before)):
         passed = set()
     accepted = trials[0] if trials and trials[0].effect in passed else None
     probability = _probabilities(trials, passed, bar, temperature)
     return Round(tuple(leads), tuple(trials), probability, accepted, temperature)
+
+
+def _holds(fitter: Fitter, best: Fitted, trial: Trial, *, further: bool) -> bool:
+    """Near the floor, which a few repeats tell to a few per cent, an effect must matter; and there, as where it comes
+    after another, it must predict experiments that it was not fitted to."""
+    near_floor = best.mean_square < NEAR_FLOOR
+    if near_floor and fitter.floor.repeated and trial.fitted.mean_square > (1 - MATTERS) * best.mean_square:
+        return False
+    if not (near_floor or further):
+        return True
+    try:
+        return confirmed(fitter, best, trial.fitted)
+    except NumericalError:
+        return False
 
 
 def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> list[Trial]:
