@@ -11,6 +11,7 @@ from tendonlab import _core
 from tendonlab.errors import ParameterError
 
 AXES = ("rotary", "linear")
+LEVEL, MEMORY, REFINES = 2, 16, 32  # roles of laws, as the core numbers them (core/law.hpp)
 UNITS = _core.units()
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from tendonlab.catalog import AXES, SystemInfo, nearest, parameter_unit, system_info
+from tendonlab.catalog import AXES, LEVEL, MEMORY, SystemInfo, nearest, parameter_unit, system_info
 from tendonlab.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from tendonlab.data import Controller, Dataset, Experiment
     from tendonlab.trajectory import Trajectory
-
-_LEVEL, _MEMORY = 2, 16  # bits of an effect's `roles`: adds to dry friction; shapes what the levels beside it give
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,8 +138,8 @@ class System:
     def _require_company(self, name: str) -> None:
         """Raises where an effect shapes dry friction (Role::memory) and no level beside it gives any."""
         effect = self.info.effect(name)
-        levels = [e.name for e in self.info.effects if e.element == effect.element and e.roles & _LEVEL]
-        if effect.roles & _MEMORY and not set(levels) & set(self.effects):
+        levels = [e.name for e in self.info.effects if e.element == effect.element and e.roles & LEVEL]
+        if effect.roles & MEMORY and not set(levels) & set(self.effects):
             told = f"expected one of {', '.join(levels)} beside it"
             raise ParameterError(f"{name} takes over the dry friction of its slot: {told}")
 

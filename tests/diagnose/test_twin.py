@@ -12,10 +12,12 @@ from tendonlab.blind.twin import make_twin
 from tendonlab.demo import bundled
 from twin import TwinDiagnosis
 
+DATA = Path(__file__).parents[2] / "data"
+
 
 @pytest.fixture(scope="module")
 def truth() -> dict[str, Any]:
-    return tomllib.loads((Path(bundled()) / "sealed.toml").read_text(encoding="utf-8"))
+    return tomllib.loads((DATA / "two_inertia" / "sealed.toml").read_text(encoding="utf-8"))
 
 
 def test_the_withheld_effect_is_selected(twin_diagnosis: TwinDiagnosis, truth: dict[str, Any]) -> None:

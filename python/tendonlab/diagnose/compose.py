@@ -103,7 +103,8 @@ def _explained(stages: dict[str, Replayed], floor: Floor) -> float | None:
 
 
 def _invisible(found: Search) -> tuple[str, ...]:
-    return tuple(x.effect for x in found.rounds[0].leads if x.visibility < INVISIBLE) if found.rounds else ()
+    leads = found.rounds[0].leads if found.rounds else ()
+    return tuple(x.effect for x in leads if max(x.visibility, x.gain) < INVISIBLE and x.effect not in found.selected)
 
 
 def _next(case: Case, floor: Floor, found: Search) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.catalog import Effect, Parameter
+from tendonlab.catalog import LEVEL, REFINES, Effect, Parameter
 from tendonlab.diagnose.case import Case
 from tendonlab.diagnose.fits import Fitted, Fitter
 from tendonlab.diagnose.floor import started
@@ -17,7 +17,6 @@ from tendonlab.priors import AMPLITUDE_SD, start_of
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
-LEVEL, REFINES = 2, 32  # roles of laws, as the core numbers them
 INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
 
 

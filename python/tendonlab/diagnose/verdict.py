@@ -10,7 +10,7 @@ import numpy as np
 
 from tendonlab.diagnose.confirm import NEAR_FLOOR
 from tendonlab.diagnose.floor import Floor
-from tendonlab.diagnose.search import Round, Search
+from tendonlab.diagnose.search import MATTERS, Round, Search
 
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 EXPLAINED = 0.85  # share of the held-out excess that library effects must remove to be the whole answer
@@ -31,11 +31,12 @@ class Verdict:
 def decide(found: Search, *, nominal: float, explained: float | None, floor: Floor) -> Verdict:
     """`nominal`: mean square over the floor at the untouched simulator (whitened, or plain where nothing repeats).
     `explained`: share of the held-out excess that the selected effects remove, None where there is none."""
-    at_floor = nominal < NO_GAP
+    nothing_to_tune = floor.repeated and NEAR_FLOOR > found.null.mean_square > (1 - MATTERS) * nominal
+    at_floor = nominal < NO_GAP or (nothing_to_tune and not found.selected)
     refitted_at_floor = found.null.mean_square < NEAR_FLOOR or not floor.repeated
     none = found.rounds[0].probability[None] if found.rounds else 1.0
     weight = {
-        "no_gap": _step(NO_GAP - nominal) * (1.0 if not found.selected else none),
+        "no_gap": _step(SOFT if at_floor else NO_GAP - nominal) * (1.0 if not found.selected else none),
         "parameters_only": _step(nominal - NO_GAP)
         * none
         * _step((NEAR_FLOOR - found.null.mean_square) if floor.repeated else SOFT),
