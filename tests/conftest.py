@@ -1,10 +1,12 @@
 """What all tests share: no display, the measured data where they lie beside the repository, one run of the demo."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib
 import pytest
+from matplotlib import pyplot as plt
 
 from twin import TwinDiagnosis, run_demo
 
@@ -13,6 +15,12 @@ matplotlib.use("Agg")
 _MEASURED = Path(__file__).resolve().parents[2] / "shared" / "data"
 if _MEASURED.is_dir():
     os.environ.setdefault("TENDONLAB_DATA", str(_MEASURED))
+
+
+@pytest.fixture(autouse=True)
+def _no_figure_is_left_open() -> Iterator[None]:
+    yield
+    plt.close("all")
 
 
 @pytest.fixture(scope="session")

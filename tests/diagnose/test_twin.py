@@ -27,12 +27,12 @@ def test_the_withheld_effect_is_selected(twin_diagnosis: TwinDiagnosis, truth: d
     assert found.effects[0].name == truth["effects"][0]
 
 
-def test_parameters_of_the_effect_hold_the_truth(twin_diagnosis: TwinDiagnosis, truth: dict[str, Any]) -> None:
+def test_parameters_of_the_effect_are_near_the_truth(twin_diagnosis: TwinDiagnosis, truth: dict[str, Any]) -> None:
+    """Within 5 %: the rig's controller acts on noisy readings, which shake its dry friction; the replay's does not."""
     fitted = twin_diagnosis.diagnosis.effects[0].parameters
+    assert set(fitted) == {"static_excess", "stribeck_velocity"}
     for own, value in fitted.items():
-        low, high = value["ci95"]
-        margin = 0.1 * (high - low)  # two intervals of 95 % miss together one time in ten
-        assert low - margin < truth["truth"][f"joint_{own}"] < high + margin
+        assert value["value"] == pytest.approx(truth["truth"][f"joint_{own}"], rel=0.05)
 
 
 def test_the_gap_shrinks_as_it_does_for_one_who_knows_the_effect(

@@ -64,13 +64,13 @@ def test_jacobian_by_initial_states(drive: Any) -> None:
     task = _core.Task(moving, whitening, initial=states, initial_sd=sd)
     start = np.array([0.1, 0.04, 0.3])
     found = rig.linearise([task], rig.free("joint_coulomb"))["jacobian_initial"][0]
-    for k, step in enumerate(1e-4 * np.diag(sd)):
+    for k, step in enumerate(1e-3 * np.diag(sd)):  # a smaller one is drowned by the runs' own 1e-9
         up, down = (
             rig.linearise([task], rig.free("joint_coulomb"), initial=[list(start + s)])["residuals"][0]
             for s in (step, -step)
         )
         assert (
-            largest_error(found[:, [k]], ((up - down) / 2e-4)[:, None]) < 1e-5
+            largest_error(found[:, [k]], ((up - down) / 2e-3)[:, None]) < 1e-5
         )  # by the coordinate (value - mean) / sd
 
 

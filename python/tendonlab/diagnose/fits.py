@@ -11,7 +11,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.diagnose.case import Case
-from tendonlab.diagnose.floor import Floor, kept_samples
+from tendonlab.diagnose.floor import Floor, integrated_time, kept_samples
 from tendonlab.priors import Free, free_parameters
 from tendonlab.system import System
 
@@ -96,9 +96,12 @@ class Fitted:
 
     @cached_property
     def covariance(self) -> np.ndarray:
-        """Of the coordinates: a sandwich over blocks, never less than the prior and the noise give."""
+        """Of the coordinates: a sandwich over blocks, never less than what the prior, the noise and the errors that the
+        model leaves give."""
         plain = np.linalg.inv(self.precision)
-        meat = max(1.0, self.mean_square) * self._information + np.diag(self._prior)
+        memory = float(np.mean([integrated_time(b.residual) for b in self.blocks]))  # what is left is not white
+        excess = max(1.0, self.mean_square * memory * self.share)
+        meat = excess * self._information + np.diag(self._prior)
         usual = np.asarray(plain @ meat @ plain)
         if len(self.blocks) < 2:
             return usual
