@@ -1,0 +1,76 @@
+"""Runs of the bench as the twin gives them: a trapezoid of speed, the input angle, and two load cells (S0 section 2.3).
+
+Readings are raw: with the cells' gain, offset and creep still in them. Lever, ramps, travel and noise are not printed:
+reconstructed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from scipy.signal import lsim
+
+from tendonlab.errors import ParameterError
+from tendonlab.papers.s0 import twin
+from tendonlab.papers.s0.bench import SAMPLE_RATE, Configuration
+
+LEVER = 0.06  # m, load cell to shaft axis: L of S0 eq. 6, whose value is not printed
+TRAVEL = 200.0  # rad of the input in every run: from the same position over the same cable
+ACCELERATION = 500.0  # rad/s²
+MOTOR_INERTIA = 1e-4  # kg·m²
+REST = 0.1  # s, before and after the ramps
+ANGLE_NOISE, FORCE_NOISE = 2e-4, 0.05  # rad and N, sd of a sample
+GAINS, OFFSETS = (1.02, 0.97), (0.15, -0.08)  # N per N and N: reading = gain·force + offset
+CREEP, CREEP_TIME = 5e-3, 20.0  # 1 and s: share of a lasting force that the reading rises by, slowly
+
+
+def trapezoid(speed: float, *, travel: float = TRAVEL) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time s, speed rad/s and acceleration rad/s² of a run at `speed` over `travel` rad, sampled at 1 kHz.
+
+    Raises ParameterError where the ramps alone need more travel."""
+    ramp = abs(speed) / ACCELERATION
+    if not (speed != 0 and abs(speed) * ramp < travel):
+        raise ParameterError(f"travel = {travel}: expected more than {abs(speed) * ramp} rad, which the ramps take")
+    steady = travel / abs(speed) - ramp
+    time = np.arange(0.0, 2 * REST + 2 * ramp + steady, 1 / SAMPLE_RATE)
+    edges = REST + np.array([0.0, ramp, ramp + steady, 2 * ramp + steady])
+    share = np.interp(time, edges, [0.0, 1.0, 1.0, 0.0])
+    slope = np.select([(time >= edges[0]) & (time < edges[1]), (time >= edges[2]) & (time < edges[3])], [1.0, -1.0])
+    return time, speed * share, np.sign(speed) * ACCELERATION * slope
+
+
+def simulate_run(
+    of: Configuration, *, speed: float, travel: float = TRAVEL, seed: int | np.random.Generator = 0
+) -> pd.DataFrame:
+    """One run of the twin at input `speed`, rad/s: indexed by time "t", s, with `input_angle` rad and the readings of
+    both cells, `reading_1` and `reading_2`, N.
+
+    The friction of a run differs from that of the next by 3 % and 1 mN·m (sd). Raises ParameterError as `trapezoid`."""
+    rng = np.random.default_rng(seed)
+    time, velocity, acceleration = trapezoid(speed, travel=travel)
+    inertia = MOTOR_INERTIA + of.capstan.inertia + (of.pulley.inertia + of.external.inertia) / of.ratio() ** 2
+    friction = twin.friction(of, velocity)
+    friction = friction + np.sign(velocity) * twin.noise_sd(friction) * rng.normal()
+    force = (inertia * acceleration + friction) / (2 * LEVER)  # one cell pulls, the other pushes: half the couple each
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(time))])
+    frame = {"input_angle": angle + ANGLE_NOISE * rng.normal(size=len(time))}
+    for k, (gain, offset) in enumerate(zip(GAINS, OFFSETS, strict=True), start=1):
+        noise = FORCE_NOISE * rng.normal(size=len(time))
+        frame[f"reading_{k}"] = gain * (force + _creep(time, force)) + offset + noise
+    return pd.DataFrame(frame, index=pd.Index(time, name="t"))
+
+
+def schedule(speeds: np.ndarray, *, num_runs: int, seed: int | np.random.Generator = 0) -> np.ndarray:
+    """Order of the runs: each speed `num_runs` times, shape (num_runs · n,), never twice in a row (S0 section 2.3)."""
+    rng = np.random.default_rng(seed)
+    order: list[float] = []
+    for _ in range(num_runs):
+        turn = rng.permutation(speeds)
+        while order and len(speeds) > 1 and turn[0] == order[-1]:
+            turn = rng.permutation(speeds)
+        order.extend(float(v) for v in turn)
+    return np.array(order)
+
+
+def _creep(time: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Creep of a cell, N: a first-order lag of a small share of the force."""
+    return np.asarray(lsim(([CREEP], [CREEP_TIME, 1.0]), force, time)[1])
