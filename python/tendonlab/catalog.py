@@ -11,14 +11,15 @@ from tendonlab import _core
 from tendonlab.errors import ParameterError
 
 AXES = ("rotary", "linear")
-LEVEL, MEMORY, REFINES = 2, 16, 32  # roles of laws, as the core numbers them (core/law.hpp)
+LEVEL, MEMORY, REFINES, WHOLE = 2, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
 UNITS = _core.units()
 
 
 @dataclass(frozen=True)
 class Parameter:
     """A row of a law's or system's table. `typical` is in units of the rig's own scale of that dimension (its rms
-    effort, speed, travel), absolute for ratios and times. `purpose`: "structure", "amplitude", "share" or "shape"."""
+    effort, speed, travel), absolute for ratios and times. `purpose`: "structure", "amplitude", "share",
+    "shape" or "condition" (each experiment states it)."""
 
     name: str
     element: str | None

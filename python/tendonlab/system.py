@@ -37,6 +37,8 @@ class System:
         for name in self.effects:
             self._require_company(name)
         known = self._own_names()
+        stated = {p.name: p.typical for p in self.info.parameters if p.purpose == "condition" and p.name in known}
+        object.__setattr__(self, "parameters", {**stated, **self.parameters})
         for name, value in self.parameters.items():
             if name not in known:
                 offer = nearest(name, known)
@@ -176,6 +178,6 @@ def _with_defaults(info: SystemInfo, effects: tuple[str, ...], values: dict[str,
     for name in effects:
         for full_name in info.effect(name).parameters:
             row = info.parameter(full_name)
-            if full_name not in full and row.purpose != "shape":
+            if full_name not in full and row.purpose not in ("shape", "condition"):
                 full[full_name] = row.typical if row.purpose == "share" else 0.0
     return full

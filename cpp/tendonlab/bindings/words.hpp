@@ -18,7 +18,7 @@ inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
                                                      {"command", "N*m", "N"},
                                                      {"effort_per_command", "N*m", "N"},
                                                      {"output", "unit of its signal", "unit of its signal"}};
-inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape"};
+inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape", "condition"};
 
 inline const DimensionWords& words(Dimension dimension) {
   return dimension_words[static_cast<int>(dimension)];

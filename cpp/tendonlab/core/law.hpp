@@ -15,9 +15,10 @@ enum Sees : unsigned { sees_nothing = 0, sees_velocity = 1, sees_position = 2, s
 
 /// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
 /// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of
-/// other laws goes, and nothing by itself.
+/// other laws goes, and nothing by itself; whole: all the friction of its slot, a simulator's own choice and no term
+/// that one may lack.
 namespace role {
-enum : unsigned { motion = 1, level = 2, factor = 4, force = 8, memory = 16, refines = 32 };
+enum : unsigned { motion = 1, level = 2, factor = 4, force = 8, memory = 16, refines = 32, whole = 64 };
 }
 
 /// A closed list of laws, in the order in which reports show them and slots apply them.
@@ -48,6 +49,17 @@ struct SeeingOf<what, Laws<Law...>> {
   using Kept = std::conditional_t<(One<double>::sees & what) != 0, Laws<One>, Laws<>>;
   using type = typename Joined<Laws<>, Kept<Law>...>::type;
 };
+template <unsigned what, class List>
+struct WithoutOf;
+template <unsigned what, template <class> class... Law>
+struct WithoutOf<what, Laws<Law...>> {
+  template <template <class> class One>
+  using Kept = std::conditional_t<(One<double>::roles & what) == 0, Laws<One>, Laws<>>;
+  using type = typename Joined<Laws<>, Kept<Law>...>::type;
+};
+/// The laws of `List` that play no role of `what`, e.g. those without memory.
+template <unsigned what, class List>
+using Without = typename WithoutOf<what, List>::type;
 /// The laws of `List` that look at `what`, e.g. those whose friction depends on the load.
 template <unsigned what, class List>
 using Seeing = typename SeeingOf<what, List>::type;

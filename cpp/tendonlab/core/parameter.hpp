@@ -27,7 +27,8 @@ enum class Purpose {
   structure,  ///< of the system itself
   amplitude,  ///< the effect vanishes where it is 0; fitted
   share,      ///< the effect vanishes where it is 0; held at `typical` unless asked for
-  shape       ///< has no meaning while the amplitude is 0; fitted
+  shape,      ///< has no meaning while the amplitude is 0; fitted
+  condition   ///< of the experiment, which states it; `typical` where none does; never fitted
 };
 
 /// `typical` is in units of the rig's own scale of that dimension (its rms effort, speed, travel), or absolute for a

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.catalog import LEVEL, REFINES, Effect, Parameter
+from tendonlab.catalog import LEVEL, REFINES, WHOLE, Effect, Parameter
 from tendonlab.diagnose.case import Case
 from tendonlab.diagnose.fits import Fitted, Fitter
 from tendonlab.diagnose.floor import started
@@ -32,14 +32,14 @@ class Lead:
 
 
 def candidates(case: Case, best: Fitted) -> list[str]:
-    """Effects of the library that the model lacks and that these data could show."""
+    """Effects of the library that the model lacks and that these data could show; a whole curve is no effect."""
     info = case.system.info
     measured = {info.outputs[c].name for c in case.measured}
     found = []
     for e in info.effects:
         sensor = e.element.removeprefix("sensor.")
         unseen = e.element.startswith("sensor.") and sensor not in measured
-        if e.structural or unseen or e.name in best.system.effects or not _has_ground(e, best):
+        if e.structural or e.roles & WHOLE or unseen or e.name in best.system.effects or not _has_ground(e, best):
             continue
         found.append(e.name)
     return found

@@ -12,6 +12,7 @@ from scipy.signal import lsim
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0 import twin
 from tendonlab.papers.s0.bench import SAMPLE_RATE, Configuration
+from tendonlab.procedures import LoadCell, MapPoint, map_point, reactive_torque
 
 LEVER = 0.06  # m, load cell to shaft axis: L of S0 eq. 6, whose value is not printed
 TRAVEL = 200.0  # rad of the input in every run: from the same position over the same cable
@@ -19,8 +20,10 @@ ACCELERATION = 500.0  # rad/s²
 MOTOR_INERTIA = 1e-4  # kg·m²
 REST = 0.1  # s, before and after the ramps
 ANGLE_NOISE, FORCE_NOISE = 2e-4, 0.05  # rad and N, sd of a sample
-GAINS, OFFSETS = (1.02, 0.97), (0.15, -0.08)  # N per N and N: reading = gain·force + offset
-CREEP, CREEP_TIME = 5e-3, 20.0  # 1 and s: share of a lasting force that the reading rises by, slowly
+CELLS = (
+    LoadCell(gain=0.98, offset=0.15, creep=5e-3, creep_time=20.0),  # N per unit of the reading, its unit, 1, s
+    LoadCell(gain=1.03, offset=-0.08, creep=5e-3, creep_time=20.0),
+)
 
 
 def trapezoid(speed: float, *, travel: float = TRAVEL) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -53,9 +56,9 @@ def simulate_run(
     force = (inertia * acceleration + friction) / (2 * LEVER)  # one cell pulls, the other pushes: half the couple each
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(time))])
     frame = {"input_angle": angle + ANGLE_NOISE * rng.normal(size=len(time))}
-    for k, (gain, offset) in enumerate(zip(GAINS, OFFSETS, strict=True), start=1):
-        noise = FORCE_NOISE * rng.normal(size=len(time))
-        frame[f"reading_{k}"] = gain * (force + _creep(time, force)) + offset + noise
+    for k, cell in enumerate(CELLS, start=1):
+        apparent = force + _creep(time, force, cell) + FORCE_NOISE * rng.normal(size=len(time))
+        frame[f"reading_{k}"] = apparent / cell.gain + cell.offset
     return pd.DataFrame(frame, index=pd.Index(time, name="t"))
 
 
@@ -71,6 +74,18 @@ def schedule(speeds: np.ndarray, *, num_runs: int, seed: int | np.random.Generat
     return np.array(order)
 
 
-def _creep(time: np.ndarray, force: np.ndarray) -> np.ndarray:
+def torque_of(run: pd.DataFrame, *, cells: tuple[LoadCell, LoadCell] = CELLS) -> np.ndarray:
+    """Torque of the motor, N·m, shape (n,), from the raw readings of a run (S0 eq. 6): calibrated, without creep."""
+    return reactive_torque(
+        run["reading_1"], run["reading_2"], lever=LEVER, calibration=cells, time=run.index.to_numpy(dtype=float)
+    )
+
+
+def point_of(run: pd.DataFrame) -> MapPoint:
+    """The map point of a run: speed and mean torque of its steady part."""
+    return map_point(run.index.to_numpy(dtype=float), run["input_angle"].to_numpy(), torque_of(run))
+
+
+def _creep(time: np.ndarray, force: np.ndarray, cell: LoadCell) -> np.ndarray:
     """Creep of a cell, N: a first-order lag of a small share of the force."""
-    return np.asarray(lsim(([CREEP], [CREEP_TIME, 1.0]), force, time)[1])
+    return np.asarray(lsim(([cell.creep], [cell.creep_time, 1.0]), force, time)[1])
