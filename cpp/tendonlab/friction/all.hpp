@@ -12,4 +12,4 @@ namespace tendonlab::friction {
 using All = Laws<Coulomb, Viscous, Stribeck, Presliding, LoadDependence, Asymmetry>;
 /// Whole curves of steady friction over speed, for maps; where things move the terms above stand.
 using Curves = Laws<LoadAndRatio, StaticLugre>;
-}
+}  // namespace tendonlab::friction

@@ -26,29 +26,30 @@ struct LoadAndRatio {
   Divisor<T> ratio;
 
   static constexpr auto parameters() {
-    return std::tuple{
-        parameter(&LoadAndRatio::coulomb, "coulomb", Dimension::effort, Purpose::amplitude, 0.05, 0.0, inf,
-                  "kinetic friction per 1 + relative load, at the reference speed"),
-        parameter(&LoadAndRatio::at_rest, "static_friction", Dimension::effort, Purpose::amplitude, 0.2, 0.0, inf,
-                  "static friction, whatever the load"),
-        parameter(&LoadAndRatio::falloff, "stribeck_velocity", Dimension::flow, Purpose::shape, 0.4, 1e-9, inf,
-                  "speed at which 1/e of the peak at low speed is left"),
-        parameter(&LoadAndRatio::viscous, "viscous", Dimension::damping, Purpose::amplitude, 0.5, 0.0, inf,
-                  "viscous friction of one shaft"),
-        parameter(&LoadAndRatio::load_exponent, "load_exponent", Dimension::ratio, Purpose::shape, 0.5, -1.0, 4.0,
-                  "delta: growth of the load-dependent part with speed"),
-        parameter(&LoadAndRatio::peak_exponent, "peak_exponent", Dimension::ratio, Purpose::shape, 1.0, -1.0, 6.0,
-                  "beta: growth of the peak at low speed with speed"),
-        parameter(&LoadAndRatio::stribeck_exponent, "stribeck_exponent", Dimension::ratio, Purpose::shape, 2.0, 0.5,
-                  10.0, "alpha: sharpness of the end of the peak at low speed; 2: Gaussian"),
-        parameter(&LoadAndRatio::viscous_exponent, "viscous_exponent", Dimension::ratio, Purpose::shape, 1.0, -1.0, 4.0,
-                  "gamma: growth of the part of viscous friction that falls with load"),
-        parameter(&LoadAndRatio::ratio, "transmission_ratio", Dimension::ratio, Purpose::condition, 1.0, 1e-6, inf,
-                  "input speed over output speed")};
+    return std::tuple{parameter(&LoadAndRatio::coulomb, "coulomb", Dimension::effort, Purpose::amplitude, 0.05, 0.0,
+                                inf, "kinetic friction per 1 + relative load, at the reference speed"),
+                      parameter(&LoadAndRatio::at_rest, "static_friction", Dimension::effort, Purpose::amplitude, 0.2,
+                                0.0, inf, "static friction, whatever the load"),
+                      parameter(&LoadAndRatio::falloff, "stribeck_velocity", Dimension::flow, Purpose::shape, 0.4, 1e-9,
+                                inf, "speed at which 1/e of the peak at low speed is left"),
+                      parameter(&LoadAndRatio::viscous, "viscous", Dimension::damping, Purpose::amplitude, 0.5, 0.0,
+                                inf, "viscous friction of one shaft"),
+                      parameter(&LoadAndRatio::load_exponent, "load_exponent", Dimension::ratio, Purpose::shape, 0.5,
+                                -1.0, 4.0, "delta: growth of the load-dependent part with speed"),
+                      parameter(&LoadAndRatio::peak_exponent, "peak_exponent", Dimension::ratio, Purpose::shape, 1.0,
+                                -1.0, 6.0, "beta: growth of the peak at low speed with speed"),
+                      parameter(&LoadAndRatio::stribeck_exponent, "stribeck_exponent", Dimension::ratio, Purpose::shape,
+                                2.0, 0.5, 10.0, "alpha: sharpness of the end of the peak at low speed; 2: Gaussian"),
+                      parameter(&LoadAndRatio::viscous_exponent, "viscous_exponent", Dimension::ratio, Purpose::shape,
+                                1.0, -1.0, 4.0, "gamma: growth of the part of viscous friction that falls with load"),
+                      parameter(&LoadAndRatio::ratio, "transmission_ratio", Dimension::ratio, Purpose::condition, 1.0,
+                                1e-6, inf, "input speed over output speed")};
   }
   template <class S>
   S level(const Sliding<S>& at) const {
-    const S w = at.speed(), load = abs(at.load), per_load = coulomb * (1.0 + load);  // v_0 = 1
+    constexpr double least = 1e-9;  // w/L must not become infinite where no load is stated
+    const S w = at.speed(), carried = abs(at.load), per_load = coulomb * (1.0 + carried);  // v_0 = 1
+    const S load = select(plain(carried) > least, carried, constant<S>(least));
     const S peak = at_rest + per_load * power(w, peak_exponent);
     const S both_shafts = (1.0 + square(1.0 / ratio)) * w;
     return per_load * power(w, load_exponent) + peak * exp(-power(S(w / falloff), stribeck_exponent)) +

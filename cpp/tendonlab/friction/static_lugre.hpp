@@ -20,15 +20,14 @@ struct StaticLugre {
   T exponent;
 
   static constexpr auto parameters() {
-    return std::tuple{
-        parameter(&StaticLugre::coulomb, "coulomb", Dimension::effort, Purpose::amplitude, 1.0, 0.0, inf,
-                  "kinetic friction: the dry level at speed"),
-        parameter(&StaticLugre::at_rest, "static_friction", Dimension::effort, Purpose::amplitude, 1.0, 0.0, inf,
-                  "static friction: the dry level at rest"),
-        parameter(&StaticLugre::falloff, "stribeck_velocity", Dimension::flow, Purpose::shape, 0.2, 1e-9, inf,
-                  "speed at which 1/e of the way from static to kinetic is left"),
-        parameter(&StaticLugre::exponent, "stribeck_exponent", Dimension::ratio, Purpose::shape, 2.0, 0.5, 10.0,
-                  "sharpness of the way from static to kinetic; 2: Gaussian")};
+    return std::tuple{parameter(&StaticLugre::coulomb, "coulomb", Dimension::effort, Purpose::amplitude, 1.0, 0.0, inf,
+                                "kinetic friction: the dry level at speed"),
+                      parameter(&StaticLugre::at_rest, "static_friction", Dimension::effort, Purpose::amplitude, 1.0,
+                                0.0, inf, "static friction: the dry level at rest"),
+                      parameter(&StaticLugre::falloff, "stribeck_velocity", Dimension::flow, Purpose::shape, 0.2, 1e-9,
+                                inf, "speed at which 1/e of the way from static to kinetic is left"),
+                      parameter(&StaticLugre::exponent, "stribeck_exponent", Dimension::ratio, Purpose::shape, 2.0, 0.5,
+                                10.0, "sharpness of the way from static to kinetic; 2: Gaussian")};
   }
   template <class S>
   S level(const Sliding<S>& at) const {

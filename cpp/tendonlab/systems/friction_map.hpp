@@ -1,0 +1,45 @@
+#pragma once
+#include "tendonlab/systems/sampled.hpp"
+
+namespace tendonlab::systems {
+/// Steady points of a loaded transmission: one friction torque an input speed, whatever came before.
+///
+///   T = T_f(speed; relative load, transmission ratio)                     (S0 eq. 10)
+///
+/// speed: of the input, rad/s; T: on the input's side, N·m, with the sign of the speed. The slot carries the relative
+/// load (1: own weight only), so `load_dependence` is in N·m per unit of it. The default friction is the load-and-ratio
+/// model; a simulator that knows no load has `contact:static_lugre` and `contact:viscous` instead.
+template <class T>
+struct FrictionMap {
+  static constexpr std::string_view name = "friction_map", equation = "T = friction(speed; relative_load)";
+  static constexpr int dof = 0, directions = 0, sides = 0;
+  static constexpr bool sampled = true, commanded = false, plain_names = true;
+  static constexpr std::size_t carried = 0;
+  static constexpr std::array<Port, 1> ports{{{"contact"}}};
+  static constexpr std::array<Input, 1> inputs{
+      {{"speed", "speed of the input shaft", Dimension::flow, true, Between::linear}}};
+  static constexpr std::array<Output, 1> outputs{
+      {{"friction_torque", "friction on the side of the input", Dimension::effort, -1}}};
+  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr std::array<std::string_view, 1> nominal{"contact:load_and_ratio"};
+
+  using Terms = Without<role::memory, friction::All>;  // at a steady speed no bristle moves
+  std::tuple<Slot<T, typename Joined<friction::Curves, Terms>::type>> slot;
+  Chain<T, Laws<>> load, actuation;
+  std::array<Chain<T, Laws<sensing::Bias>>, 1> sensor;
+  T relative_load;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&FrictionMap::relative_load, "relative_load", Dimension::ratio, Purpose::condition, 1.0,
+                                1e-6, inf, "what the bearings carry over what own weight makes them carry")};
+  }
+  void prepare() {}
+  template <class Inputs, class Memory>
+  Sample<T, 1, 1> evaluate(const Inputs& in, Memory&) const {
+    Sample<T, 1, 1> of;
+    of.port[0] = sliding(in.template input<0>(), T(0.0), relative_load);
+    of.output[0] = of.force[0] = answer(std::get<0>(slot), of.port[0]);
+    return of;
+  }
+};
+}  // namespace tendonlab::systems
