@@ -115,6 +115,7 @@ def simulate(
     if replay == "controller" and not known:
         raise ParameterError("replay = 'controller': the system knows no controller, or its reference was not logged")
     chosen = Replay("controller" if known and replay in ("auto", "controller") else "free")
+    system = _there(system, experiment)
     ready = prepare(experiment, system, chosen)
     run = _core.simulate(
         system.kind, system.values(), system.active(), ready.core, [], _core.Settings(
@@ -130,6 +131,13 @@ def simulate(
         num_attempts=run["attempts"],
         num_events=run["events"],
     )
+
+
+def _there(system: System, experiment: Experiment) -> System:
+    """The simulator under the conditions of an experiment and with what was added; other names are covariates."""
+    values = {name: value for name, value in experiment.conditions.items() if name in system.parameters}
+    added = {n: system.parameters[n] + more for n, more in experiment.add.items() if n in system.parameters}
+    return system.with_parameters({**added, **values})
 
 
 def _port_frame(ports: np.ndarray, system: System, index: pd.Index) -> pd.DataFrame:

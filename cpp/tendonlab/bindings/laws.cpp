@@ -111,14 +111,19 @@ std::string represent(const L& law) {
   return pascal_case(L::name) + "(" + inside + ")";
 }
 
+/// Words are only made for a number that is refused: this runs once a sample.
+void require_finite(std::string_view name, double value, Dimension dimension) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  if (!std::isfinite(value)) require_within(name, value, -largest, largest, both_units(dimension));
+}
+
 /// What a law sees in a port of its own: the modes that a stepper would hold follow from the motion, 0 at rest.
 template <class L>
 Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  require_within("velocity", velocity, -largest, largest, both_units(Dimension::flow));
-  require_within("position", position, -largest, largest, both_units(Dimension::displacement));
-  require_within("load", load, -largest, largest, both_units(Dimension::effort));
-  require_within("wrap_angle", wrap, -largest, largest, "rad");
+  require_finite("velocity", velocity, Dimension::flow);
+  require_finite("position", position, Dimension::displacement);
+  require_finite("load", load, Dimension::effort);
+  require_finite("wrap_angle", wrap, Dimension::angle);
   Sliding<double> at{velocity, position, load, static_cast<double>((velocity > 0) - (velocity < 0)), 0.0, wrap};
   if constexpr (plays<L>(role::motion)) {
     const double half_gap = law->half_gap();

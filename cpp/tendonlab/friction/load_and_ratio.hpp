@@ -51,7 +51,7 @@ struct LoadAndRatio {
     const S w = at.speed(), carried = abs(at.load), per_load = coulomb * (1.0 + carried);  // v_0 = 1
     const S load = select(plain(carried) > least, carried, constant<S>(least));
     const S peak = at_rest + per_load * power(w, peak_exponent);
-    const S both_shafts = (1.0 + square(1.0 / ratio)) * w;
+    const S both_shafts = (1.0 + square(ratio.reciprocal)) * w;
     return per_load * power(w, load_exponent) + peak * exp(-power(S(w / falloff), stribeck_exponent)) +
            viscous * (both_shafts + power(S(w / load), viscous_exponent));
   }

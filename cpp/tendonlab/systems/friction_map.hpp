@@ -23,6 +23,13 @@ struct FrictionMap {
   static constexpr std::array<std::string_view, 0> structural{};
   static constexpr std::array<std::string_view, 1> nominal{"contact:load_and_ratio"};
 
+  static constexpr std::array<Renamed, 4> renamed{
+      // apart from those of the ordinary terms in the same slot
+      {{"contact:static_lugre", "coulomb", "contact_lugre_coulomb"},
+       {"contact:static_lugre", "static_friction", "contact_lugre_static_friction"},
+       {"contact:static_lugre", "stribeck_velocity", "contact_lugre_stribeck_velocity"},
+       {"contact:static_lugre", "stribeck_exponent", "contact_lugre_stribeck_exponent"}}};
+
   using Terms = Without<role::memory, friction::All>;  // at a steady speed no bristle moves
   std::tuple<Slot<T, typename Joined<friction::Curves, Terms>::type>> slot;
   Chain<T, Laws<>> load, actuation;

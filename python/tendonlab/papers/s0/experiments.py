@@ -1,0 +1,96 @@
+"""The twin's maps as a dataset of the library, and simulators of them: what S0's own gap is diagnosed on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
+from tendonlab.papers.s0.bearings import relative_load
+from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, configuration, loaded
+from tendonlab.papers.s0.maps import twin_map
+from tendonlab.papers.s0.models import Lugre, Proposed, printed_lugre
+from tendonlab.system import System
+
+LUGRE, PROPOSED = ("contact:static_lugre", "contact:viscous"), ("contact:load_and_ratio",)
+PASSES = 4  # maps of each configuration; the runs of a point are dealt out among them
+HELD_OUT = 1  # of them
+
+
+def lugre_system(model: Lugre) -> System:
+    """The static LuGre curve as a simulator of the library: it knows no load."""
+    return System(kind="friction_map", effects=LUGRE, parameters=_lugre_values(model))
+
+
+def proposed_system(model: Proposed, *, ratio: float) -> System:
+    """The load-and-ratio model as a simulator of the library."""
+    law = model.law(ratio)
+    values = {row["name"]: float(getattr(law, row["name"])) for row in law.parameters}
+    return System(kind="friction_map", effects=PROPOSED, parameters=values)
+
+
+def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
+    """Twin maps of a transmission under its four loads, beside the static LuGre simulator with the values of S0 Table 6
+    or 7: the load, that the simulator lacks, is withheld.
+
+    Each load is mapped in four passes of five runs a point and both directions; the passes repeat one another, the last
+    is held out. Everything is reconstructed."""
+    rng = np.random.default_rng(seed)
+    ratio = configuration(transmission).ratio()
+    experiments = [
+        _experiment(transmission, load, k, ratio=ratio, rng=rng) for load in LOADS for k in range(1, PASSES + 1)
+    ]
+    values = _lugre_values(printed_lugre(transmission))
+    alpha = "contact_lugre_stribeck_exponent"
+    parameters = {name: NominalParameter(value, sd=0.0 if name == alpha else None, lower=0.0) for name, value in values.items()}
+    return Dataset(
+        name=f"{transmission} under four loads",
+        description="Twin of the bench of S0, reconstructed: steady points of four loads, both directions.",
+        kind="friction_map",
+        axis="rotary",
+        nominal_effects=LUGRE,
+        parameters=parameters,
+        controller=None,
+        signals={
+            "speed": SignalSpec("speed", "speed", "rad/s", "input", hold=False, si_unit="rad/s"),
+            "friction_torque": SignalSpec(
+                "friction_torque", "friction_torque", "N*m", "output", hold=False, noise_sd=_noise(experiments), si_unit="N*m"
+            ),
+        },
+        experiments=tuple(experiments),
+        path=Path(),
+    )
+
+
+def _experiment(transmission: str, load: str, k: int, *, ratio: float, rng: np.random.Generator) -> Experiment:
+    of = loaded(transmission, load)
+    points = twin_map(of, num_runs=NUM_RUNS // PASSES, seed=rng)
+    frame = pd.DataFrame({"speed": points["speed"], "friction_torque": points["torque"]})
+    frame.index = pd.Index(np.arange(len(frame), dtype=float), name="t")
+    return Experiment(
+        name=f"{of.name} pass {k}",
+        data=frame,
+        split="test" if k > PASSES - HELD_OUT else "train",
+        repeat=of.name,
+        conditions={"relative_load": relative_load(of), "transmission_ratio": ratio},
+        holds={"speed": False},
+    )
+
+
+def _noise(experiments: list[Experiment]) -> float:
+    """Sd of a point from how its passes differ, N·m."""
+    labels = dict.fromkeys(e.repeat for e in experiments)
+    rows = [np.array([e.data["friction_torque"] for e in experiments if e.repeat == label]) for label in labels]
+    return float(np.sqrt(np.mean([r.var(axis=0, ddof=1) for r in rows])))
+
+
+def _lugre_values(model: Lugre) -> dict[str, float]:
+    return {
+        "contact_lugre_coulomb": model.F_c,
+        "contact_lugre_static_friction": model.F_s,
+        "contact_lugre_stribeck_velocity": model.theta_s,
+        "contact_lugre_stribeck_exponent": model.alpha,
+        "contact_viscous": model.F_v,
+    }
