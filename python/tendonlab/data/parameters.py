@@ -96,9 +96,7 @@ def _assume(table: Table, parameter: Parameter, info: SystemInfo) -> NominalPara
     structural = {effect.name for effect in info.effects if effect.structural}
     own = parameter.effect is None or not structural.isdisjoint(_effects_with(parameter, info))
     absolute = parameter.purpose in ("shape", "share") and parameter.dimension in ("ratio", "time")
-    if parameter.purpose == "condition":
-        value, known = parameter.typical, True
-    elif own and (parameter.typical == 0.0 or parameter.name == "torque_constant"):
+    if parameter.purpose == "condition" or (own and (parameter.typical == 0.0 or parameter.name == "torque_constant")):
         value, known = parameter.typical, True
     elif not own and absolute:
         value, known = parameter.typical, parameter.purpose == "share"

@@ -42,7 +42,9 @@ class Reactions:
         return self.R_A + self.R_B
 
 
-def cable_pull(of: Configuration, pretension: float, *, cable_diameter: bool = False, centres: float = CENTRES) -> float:
+def cable_pull(
+    of: Configuration, pretension: float, *, cable_diameter: bool = False, centres: float = CENTRES
+) -> float:
     """Force of both cable sides on a shaft, N, along the line of centres: 2 T_pr cos(psi) with sin(psi) = (r_1 + r_2)/C
     for a crossed cable and (r_2 - r_1)/C for a parallel one (S0 Fig. 8).
 

@@ -87,7 +87,7 @@ def configuration(name: str) -> Configuration:
     rows = table("S0_table3_configurations").set_index("configuration")
     if name not in rows.index:
         raise ParameterError(f"configuration = {name!r}: {nearest(name, configurations())}")
-    row = rows.loc[name]
+    row = dict(rows.loc[name])
     transmission, _, load = name.partition("-")
     return Configuration(
         transmission=transmission,
@@ -95,7 +95,7 @@ def configuration(name: str) -> Configuration:
         capstan=_shaft("Capstan", int(row["capstan_mm"])),
         pulley=_shaft("Pulley", int(row["pulley_mm"])),
         external=_external(load or "none"),
-        crossed=row["thread"] == "X",
+        crossed=bool(row["thread"] == "X"),
     )
 
 
@@ -111,7 +111,7 @@ def _external(load: str) -> Load:
 
 
 def _shaft(kind: str, size: int) -> Shaft:
-    element = table("S0_table2_elements").set_index("element").loc[f"{kind} {size}"]
+    element = dict(table("S0_table2_elements").set_index("element").loc[f"{kind} {size}"])
     rows = table("S0_table5_dimensions")
     length: pd.Series[float] = 1e-3 * rows[rows["element"] == f"{kind} {size}"].set_index("dimension")["value_mm"]
     pulley = kind == "Pulley"

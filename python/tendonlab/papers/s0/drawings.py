@@ -25,7 +25,12 @@ def motor_diagram(ax: Axes) -> Axes:
     _arrow(ax, (1.45, -1.0), (1.45, -0.1), PUSH)
     ax.text(-1.38, 0.75, "$F_1$", color=PUSH)
     ax.text(1.22, -0.85, "$F_2$", color=PUSH)
-    ax.annotate("", (-0.35, -0.62), (0.62, -0.35), arrowprops={"arrowstyle": "->", "color": REACTION, "connectionstyle": "arc3,rad=-0.5"})
+    ax.annotate(
+        "",
+        (-0.35, -0.62),
+        (0.62, -0.35),
+        arrowprops={"arrowstyle": "->", "color": REACTION, "connectionstyle": "arc3,rad=-0.5"},
+    )
     ax.text(0.35, -0.85, "$T_m$", color=REACTION)
     for x, name in ((-1.45, "$L_1$"), (1.45, "$L_2$")):
         ax.annotate("", (0, 0.72), (x, 0.72), arrowprops={"arrowstyle": "<->", "color": "0.5", "lw": 0.8})
@@ -38,7 +43,10 @@ def motor_diagram(ax: Axes) -> Axes:
 def pulley_diagram(axes: tuple[Axes, Axes], of: Configuration, *, pretension: float) -> None:
     """Fig. 8: the pulley's shaft in the vertical plane and in the plane of the cable, with reactions in N."""
     found = pulley_reactions(of, pretension=pretension)
-    weights = [(of.pulley.gravity, -of.pulley.weight, "W", PUSH), (of.pulley.disc or 0.0, -of.external.weight, "W_{ext}", PUSH)]
+    weights = [
+        (of.pulley.gravity, -of.pulley.weight, "W", PUSH),
+        (of.pulley.disc or 0.0, -of.external.weight, "W_{ext}", PUSH),
+    ]
     _shaft(axes, of, of.pulley, found, weights, cable_pull(of, pretension), "Fig. 8  Pulley shaft")
 
 
@@ -89,7 +97,9 @@ def _shaft(
         (shaft.bearing, found.B_z, "B_z", REACTION),
         (shaft.cable, -pull, "F_D", PUSH),
     ]
-    for ax, forces, plane in zip(axes, (vertical, level), ("vertical plane x–y", "plane of the cable, x–z"), strict=True):
+    for ax, forces, plane in zip(
+        axes, (vertical, level), ("vertical plane x–y", "plane of the cable, x–z"), strict=True
+    ):
         _beam(ax, shaft, [f for f in forces if f[1] != 0.0])
         ax.set_title(f"{title}, {of.name}: {plane}", fontsize=10)
 
@@ -105,10 +115,10 @@ def _beam(ax: Axes, shaft: Shaft, forces: list[Force]) -> None:
         up = 1.0 if force > 0 else -1.0
         _arrow(ax, (tip, -up * length), (tip, -up * 0.06), color)
         ax.text(tip + 2, -up * length, f"${label}$ = {abs(force):.1f} N", color=color, va="center", fontsize=8)
-    for at, label in ((shaft.bearing, "B"), (0.0, "A"), (shaft.gravity, "cg"), (shaft.cable, "D"), (shaft.disc, "E")):
-        if at is not None:
-            ax.plot(1e3 * at, 0, "|", color=BODY, ms=8)
-            ax.text(1e3 * at, 0.09, label, fontsize=8, ha="center", color="0.3")
+    points = {"A": 0.0, "B": shaft.bearing, "cg": shaft.gravity, "D": shaft.cable}
+    for label, at in (points if shaft.disc is None else {**points, "E": shaft.disc}).items():
+        ax.plot(1e3 * at, 0, "|", color=BODY, ms=8)
+        ax.text(1e3 * at, 0.09, label, fontsize=8, ha="center", color="0.3")
     ax.set(xlim=(-8, 1e3 * longest + 45), ylim=(-1.25, 1.25), xlabel="distance from bearing A (mm)", yticks=[])
     for side in ("left", "right", "top"):
         ax.spines[side].set_visible(False)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import warnings
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tendonlab import _core
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bench import CENTRES, Configuration
+
+if TYPE_CHECKING:
+    from tendonlab._core import Law
 
 AXIAL_STIFFNESS = 70e3  # N, EA of the cable; reconstructed
 WRAP_FRICTION = 0.15  # 1, cable on capstan and pulley; reconstructed
@@ -54,8 +57,8 @@ def torsional_stiffness(
     """Stiffness at the pulley, N·m/rad, of two cable sides, each a free span and two wraps in which the change of
     tension decays as friction has it (Figs 4, 5; S0 gives no equation: reconstructed).
 
-    `load_torque` N·m at the pulley, `pretension` N, `axial_stiffness` EA in N, `friction` 1. Raises ParameterError where
-    the slack side would lose its tension."""
+    `load_torque` N·m at the pulley, `pretension` N, `axial_stiffness` EA in N, `friction` 1. Raises ParameterError
+    where the slack side would lose its tension."""
     r_1, r_2 = of.radii()
     change = abs(load_torque) / (2 * r_2)
     if not pretension > change:
@@ -70,16 +73,16 @@ def dynamic_lugre(
     time: np.ndarray,
     *,
     velocity: np.ndarray,
-    curve: _core.friction.StaticLugre,
-    bristle: _core.friction.Presliding,
+    curve: Law,
+    bristle: Law,
     viscous: float,
     tolerance: float = 1e-10,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Bristle deflection, rad, and torque, N·m, of the LuGre model along a motion (S0 eqs 2, 3), from z = 0.
 
-    `time` s and `velocity` rad/s, shape (n,), joined by a cubic spline; `viscous` N·m·s/rad. The level g is held above
-    1e-3 N·m: with F_s near 0, as in S0 Tables 6 and 7, sigma_0 |v|/g blows up. Warns where that may happen, F_s < F_c.
-    """
+    `time` s and `velocity` rad/s, shape (n,), joined by a cubic spline; `curve` and `bristle` are the laws StaticLugre
+    and Presliding of the library; `viscous` N·m·s/rad. The level g is held above 1e-3 N·m: with F_s near 0, as in S0
+    Tables 6 and 7, sigma_0 |v|/g blows up. Warns where that may happen, F_s < F_c."""
     from scipy.interpolate import CubicSpline
 
     if curve.static_friction < curve.coulomb:

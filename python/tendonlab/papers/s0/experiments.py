@@ -44,7 +44,9 @@ def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
     ]
     values = _lugre_values(printed_lugre(transmission))
     alpha = "contact_lugre_stribeck_exponent"
-    parameters = {name: NominalParameter(value, sd=0.0 if name == alpha else None, lower=0.0) for name, value in values.items()}
+    parameters = {
+        name: NominalParameter(value, sd=0.0 if name == alpha else None, lower=0.0) for name, value in values.items()
+    }
     return Dataset(
         name=f"{transmission} under four loads",
         description="Twin of the bench of S0, reconstructed: steady points of four loads, both directions.",
@@ -56,7 +58,13 @@ def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
         signals={
             "speed": SignalSpec("speed", "speed", "rad/s", "input", hold=False, si_unit="rad/s"),
             "friction_torque": SignalSpec(
-                "friction_torque", "friction_torque", "N*m", "output", hold=False, noise_sd=_noise(experiments), si_unit="N*m"
+                "friction_torque",
+                "friction_torque",
+                "N*m",
+                "output",
+                hold=False,
+                noise_sd=_noise(experiments),
+                si_unit="N*m",
             ),
         },
         experiments=tuple(experiments),

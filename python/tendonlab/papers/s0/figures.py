@@ -26,7 +26,9 @@ MARKS = ("o", "s", "^", "D")
 SPEED, TORQUE, ERROR = "input speed (rad/s)", "friction torque (N·m)", "absolute error (N·m)"
 
 
-def stiffness_against_torque(ax: Axes, of: Configuration, *, pretensions: Sequence[float] = (60, 100, 150, 200)) -> Axes:
+def stiffness_against_torque(
+    ax: Axes, of: Configuration, *, pretensions: Sequence[float] = (60, 100, 150, 200)
+) -> Axes:
     """Fig. 4: stiffness falls with the torque transmitted."""
     for pretension in pretensions:
         torque = np.linspace(0.0, 0.9 * pretension * of.pulley.diameter, 60)

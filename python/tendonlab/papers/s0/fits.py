@@ -1,15 +1,19 @@
-"""Fits of S0's two models to friction maps: the static LuGre curve by variable projection, the load-and-ratio model by a
-global search."""
+"""Fits of S0's two models to friction maps: the static LuGre curve by variable projection, the load-and-ratio model by
+a global search."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
+from typing import Generic, TypeVar
 
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar, nnls
 
 from tendonlab.errors import ParameterError
+from tendonlab.papers.s0 import twin
+from tendonlab.papers.s0.bench import configuration
+from tendonlab.papers.s0.maps import reference_points, reference_torques
 from tendonlab.papers.s0.models import Decaying, Lugre, Proposed
 from tendonlab.procedures import global_search
 
@@ -18,16 +22,16 @@ LOWER = np.array([1e-5, 0.0, 3.0, 0.0, -1.0, -1.0, 0.8, -1.0])
 UPPER = np.array([0.1, 0.1, 40.0, 5e-3, 1.5, 4.0, 8.0, 3.0])
 REFERENCE_WEIGHT = 12.0  # of the residual at each reference point beside those of the map; reconstructed
 TORQUE_SCALE = 0.01  # N·m, of residuals
-_NAMES = tuple(f.name for f in fields(Proposed))
+Model = TypeVar("Model", Lugre, Proposed, Decaying)
+NAMES = tuple(f.name for f in fields(Proposed))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fit:
-    """What a fit found: the `model`, its `rms` error over the map, N·m, the parameters `at_bound`, and, of a search, the
-    `rank` of its Hessian and how many starts ended at the best cost. A parameter at a bound has no symmetric interval.
-    """
+class Fit(Generic[Model]):
+    """What a fit found: the `model`, its `rms` error over the map, N·m, the parameters `at_bound` (they have no
+    symmetric interval), and, of a search, the `rank` of its Hessian."""
 
-    model: Lugre | Proposed | Decaying
+    model: Model
     rms: float
     at_bound: tuple[str, ...]
     rank: int | None = None
@@ -39,17 +43,20 @@ class Fit:
 
 def fit_static_lugre(
     speed: np.ndarray, torque: np.ndarray, *, alpha: float = 2.0, theta_s: tuple[float, float] = (1.0, 60.0)
-) -> Fit:
-    """Least-squares static LuGre curve of a map, all loads together as S0 Tables 6 and 7 have it, with F_c, F_s, F_v >= 0.
+) -> Fit[Lugre]:
+    """Least-squares static LuGre curve of a map, all loads together as in S0 Tables 6 and 7, with F_c, F_s, F_v >= 0.
 
     `speed` rad/s and `torque` N·m, shape (n,); `theta_s` are the bounds of its search. By variable projection: for each
     theta_s the three others follow linearly. Raises ParameterError for shapes that differ or too few points."""
     if np.shape(speed) != np.shape(torque) or np.size(speed) < 4:
-        raise ParameterError(f"torque has {np.size(torque)} points: expected {max(np.size(speed), 4)}, as many as speed")
+        raise ParameterError(
+            f"torque has {np.size(torque)} points: expected {max(np.size(speed), 4)}, as many as speed"
+        )
 
     def solved(at: float) -> tuple[np.ndarray, float]:
         unit = [Lugre(F_c=a, F_s=b, theta_s=at, F_v=c, alpha=alpha) for a, b, c in np.eye(3)]
-        return nnls(np.column_stack([u.torque(speed) for u in unit]), torque)
+        found, error = nnls(np.column_stack([u.torque(speed) for u in unit]), torque)
+        return np.asarray(found), float(error)
 
     grid = np.geomspace(*theta_s, 40)
     k = int(np.argmin([solved(at)[1] for at in grid]))
@@ -72,33 +79,55 @@ def fit_proposed(
     starts: int = 60,
     seed: int = 0,
     method: str = "multistart",
-) -> Fit:
+) -> Fit[Proposed]:
     """Load-and-ratio model (S0 eq. 11) of a map of several loads, by a global search within S0's bounds.
 
     `speed` rad/s, `load` relative load, `torque` N·m: shape (n,); `ratio` N; `reference`: speed, load and torque of
-    points whose residuals count `weight` times, shape (m,) each. `starts`, `seed`, `method` as `global_search` has them.
-    S0 does not print its method. Raises ParameterError for shapes that differ."""
+    points whose residuals count `weight` times, shape (m,) each. `starts`, `seed`, `method` are those of
+    `global_search`. S0 does not print its method. Raises ParameterError for shapes that differ."""
     if not np.shape(speed) == np.shape(load) == np.shape(torque):
-        raise ParameterError(f"torque has {np.size(torque)} points: expected {np.size(speed)}, as many as speed and load")
+        raise ParameterError(
+            f"torque has {np.size(torque)} points: expected {np.size(speed)}, as many as speed and load"
+        )
     at, carried, wanted, weights = speed, load, torque, np.ones(np.shape(speed))
     if reference is not None:
         at, carried, wanted = (np.concatenate(pair) for pair in zip((speed, load, torque), reference, strict=True))
         weights = np.concatenate([weights, np.full(len(reference[0]), weight)])
 
     def residual(x: np.ndarray) -> np.ndarray:
-        model = Proposed(**dict(zip(_NAMES, map(float, x), strict=True)))
+        model = Proposed(**dict(zip(NAMES, map(float, x), strict=True)))
         return np.asarray(weights * (model.torque(at, load=carried, ratio=ratio) - wanted) / TORQUE_SCALE)
 
     found = global_search(residual, LOWER, UPPER, starts=starts, seed=seed, method=method)
-    model = Proposed(**dict(zip(_NAMES, map(float, found.values), strict=True)))
+    model = Proposed(**dict(zip(NAMES, map(float, found.values), strict=True)))
     error = model.torque(speed, load=load, ratio=ratio) - torque
-    at_bound = tuple(name for name, bound in zip(_NAMES, found.at_bound, strict=True) if bound)
+    at_bound = tuple(name for name, bound in zip(NAMES, found.at_bound, strict=True) if bound)
     return Fit(model=model, rms=_rms(error), at_bound=at_bound, rank=int(found.hessian_rank))
+
+
+def fit_on_twin(
+    transmission: str,
+    *,
+    reference: str | None = "proposed",
+    starts: int = 60,
+    seed: int = 0,
+    method: str = "multistart",
+) -> Fit[Proposed]:
+    """The load-and-ratio model on the twin's 88 noiseless points of a transmission.
+
+    `reference`: the column of S0 Table 8 that the three peaks are drawn to, "proposed" (what the paper's own curve has
+    there; gives the reconstructed set "identified_on_twin") or "measured"; None: no more than the points."""
+    speed, load, torque = twin.points(transmission)
+    drawn = None
+    if reference is not None:
+        drawn = (*reference_points(transmission), reference_torques(transmission, reference))
+    ratio = configuration(transmission).ratio()
+    return fit_proposed(speed, load, torque, ratio=ratio, reference=drawn, starts=starts, seed=seed, method=method)
 
 
 def fit_decay(
     start: Proposed, speed: np.ndarray, load: np.ndarray, torque: np.ndarray, *, ratio: float
-) -> Fit:
+) -> Fit[Decaying]:
     """The load-and-ratio model with a viscous part that fades, fitted from `start` (S0 section 6: its second gap).
 
     Arguments as for `fit_proposed`; omega_d starts at 110 rad/s, q at 4. No reference points."""
@@ -106,7 +135,7 @@ def fit_decay(
     inside = 1e-6 * (upper - lower)
 
     def model(x: np.ndarray) -> Decaying:
-        inner = Proposed(**dict(zip(_NAMES, map(float, x[:8]), strict=True)))
+        inner = Proposed(**dict(zip(NAMES, map(float, x[:8]), strict=True)))
         return Decaying(model=inner, omega_d=float(x[8]), q=float(x[9]))
 
     def residual(x: np.ndarray) -> np.ndarray:
@@ -115,7 +144,7 @@ def fit_decay(
     first = np.clip(np.append(start.values(), [110.0, 4.0]), lower + inside, upper - inside)
     found = least_squares(residual, first, bounds=(lower, upper), x_scale=upper - lower, max_nfev=400)
     best = model(found.x)
-    at_bound = tuple(name for name, active in zip((*_NAMES, "omega_d", "q"), found.active_mask, strict=True) if active)
+    at_bound = tuple(name for name, active in zip((*NAMES, "omega_d", "q"), found.active_mask, strict=True) if active)
     return Fit(model=best, rms=_rms(TORQUE_SCALE * residual(found.x)), at_bound=at_bound)
 
 

@@ -10,6 +10,7 @@ import pandas as pd
 from tendonlab.papers.s0 import twin
 from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, TRANSMISSIONS, Configuration, loaded
+from tendonlab.papers.tables import table
 
 LOADED = LOADS[1:]
 FINE = np.arange(1.0, 105.01, 0.25)  # rad/s, on which peaks and valleys are sought
@@ -18,8 +19,8 @@ FINE = np.arange(1.0, 105.01, 0.25)  # rad/s, on which peaks and valleys are sou
 def twin_map(
     of: Configuration, *, num_runs: int = NUM_RUNS, both_signs: bool = True, seed: int | np.random.Generator = 0
 ) -> pd.DataFrame:
-    """The twin's friction map of a configuration: `speed` rad/s, `torque` N·m (mean of `num_runs` runs), `sd` N·m of one
-    run, `num_runs`; a row a point, in order of speed."""
+    """The twin's friction map of a configuration: `speed` rad/s, `torque` N·m (mean of `num_runs` runs), `sd` N·m of
+    one run, `num_runs`; a row a point, in order of speed."""
     speed = np.concatenate([-twin.SPEEDS[::-1], twin.SPEEDS]) if both_signs else twin.SPEEDS
     torque, sd = twin.measured(of, speed, num_runs=num_runs, seed=seed)
     return pd.DataFrame({"speed": speed, "torque": torque, "sd": sd, "num_runs": num_runs})
@@ -37,6 +38,24 @@ def reference_points(transmission: str) -> tuple[np.ndarray, np.ndarray]:
     """Peak speeds, rad/s, and relative loads, 1, of the three loaded configurations of S0 Table 8."""
     speed = np.array([twin.peak_speed(transmission, load) for load in LOADED])
     return speed, np.array([relative_load(loaded(transmission, load)) for load in LOADED])
+
+
+def printed_peaks() -> pd.DataFrame:
+    """S0 Table 8 as printed, by configuration: torques N·m, errors per cent of the measured torque."""
+    rows = table("S0_table8_errors").set_index("configuration")
+    names = {
+        "measured_Nm": "measured",
+        "proposed_Nm": "proposed",
+        "proposed_error_pct": "proposed_error",
+        "lugre_Nm": "lugre",
+        "lugre_error_pct": "lugre_error",
+    }
+    return rows[list(names)].rename(columns=names)
+
+
+def reference_torques(transmission: str, column: str = "proposed") -> np.ndarray:
+    """A column of S0 Table 8 for the three loads of a transmission, N·m."""
+    return printed_peaks().loc[[loaded(transmission, load).name for load in LOADED], column].to_numpy(dtype=float)
 
 
 def peak_errors(model: Callable[[Configuration, float], float]) -> pd.DataFrame:

@@ -5,12 +5,17 @@ Formulas are the library's laws; here are only names, sets of numbers, and what 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from tendonlab import _core
 from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
+
+if TYPE_CHECKING:
+    from tendonlab._core import Law
 
 PROPOSED_SETS = ("table8_set", "identified_on_twin")
 
@@ -26,7 +31,7 @@ class Lugre:
     alpha: float = 2.0
 
     @property
-    def curve(self) -> _core.friction.StaticLugre:
+    def curve(self) -> Law:
         """Its dry part, as a law of the library."""
         return _core.friction.StaticLugre(
             coulomb=self.F_c,
@@ -61,7 +66,7 @@ class Proposed:
     alpha: float
     gamma: float
 
-    def law(self, ratio: float, *, exponent: str = "alpha") -> _core.friction.LoadAndRatio:
+    def law(self, ratio: float, *, exponent: str = "alpha") -> Law:
         """The law of the library at transmission ratio N. `exponent` "printed": the exponential carries delta, as S0
         prints it; "alpha": what is meant. Raises ParameterError for another word."""
         if exponent not in ("alpha", "printed"):
@@ -107,7 +112,7 @@ class Decaying:
         """Friction torque, N·m, at input `speed`, rad/s, and relative load `load`."""
         lost = 1 - 1 / (1 + (np.abs(speed) / self.omega_d) ** self.q)
         whole = self.model.torque(speed, load=load, ratio=ratio)
-        return whole - lost * self.model.viscous_torque(speed, load=load, ratio=ratio)
+        return np.asarray(whole - lost * self.model.viscous_torque(speed, load=load, ratio=ratio))
 
 
 def printed_lugre(transmission: str) -> Lugre:
@@ -123,8 +128,8 @@ def printed_lugre(transmission: str) -> Lugre:
 
 
 def reconstructed(transmission: str, which: str = "table8_set") -> Proposed:
-    """Parameters of eq. 11, which S0 does not print, reconstructed: "table8_set", from the proposed column of Table 8, or
-    "identified_on_twin". Raises ParameterError for another set or transmission."""
+    """Parameters of eq. 11, which S0 does not print, reconstructed: "table8_set", from the proposed column of Table 8,
+    or "identified_on_twin". Raises ParameterError for another set or transmission."""
     if which not in PROPOSED_SETS:
         raise ParameterError(f"set = {which!r}: expected one of {', '.join(PROPOSED_SETS)}")
     rows = _rows("S0_reconstructed_parameters", transmission)
@@ -132,7 +137,7 @@ def reconstructed(transmission: str, which: str = "table8_set") -> Proposed:
     return Proposed(**{f.name: float(value[f.name]) for f in fields(Proposed)})
 
 
-def _rows(name: str, transmission: str):  # type: ignore[no-untyped-def]
+def _rows(name: str, transmission: str) -> pd.DataFrame:
     rows = table(name)
     if transmission not in set(rows["transmission"]):
         known = ", ".join(sorted(set(rows["transmission"])))

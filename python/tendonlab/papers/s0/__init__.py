@@ -1,0 +1,65 @@
+"""S0: friction of a capstan–pulley cable transmission under external load, in the paper's notation.
+
+`bench` has the rig, `bearings` the reactions and the relative load (9), `drive` the drive (7, 8), its stiffness and
+the dynamic LuGre model (2), `models` the static LuGre curve (3) and the load-and-ratio model (11), `fits` their fits,
+`twin` and `runs` the reconstructed bench, `maps` what is read off friction maps, `experiments` the twin as a dataset,
+`figures` and `drawings` the figures, `differences` what the paper prints beside what comes out here."""
+
+from tendonlab.papers.s0.bearings import (
+    Reactions,
+    cable_pull,
+    capstan_reactions,
+    pulley_reactions,
+    reactions,
+    relative_load,
+)
+from tendonlab.papers.s0.bench import LOADS, TRANSMISSIONS, Configuration, configuration, configurations, loaded
+from tendonlab.papers.s0.differences import differences
+from tendonlab.papers.s0.drive import dynamic_lugre, motor_torque, torsional_stiffness, viscous_factor
+from tendonlab.papers.s0.experiments import load_dataset, lugre_system, proposed_system
+from tendonlab.papers.s0.fits import Fit, fit_decay, fit_on_twin, fit_proposed, fit_static_lugre
+from tendonlab.papers.s0.maps import absolute_error, features, peak_errors, printed_peaks, twin_map
+from tendonlab.papers.s0.models import Decaying, Lugre, Proposed, printed_lugre, reconstructed
+from tendonlab.papers.s0.runs import point_of, schedule, simulate_run, torque_of
+
+__all__ = [
+    "LOADS",
+    "TRANSMISSIONS",
+    "Configuration",
+    "Decaying",
+    "Fit",
+    "Lugre",
+    "Proposed",
+    "Reactions",
+    "absolute_error",
+    "cable_pull",
+    "capstan_reactions",
+    "configuration",
+    "configurations",
+    "differences",
+    "dynamic_lugre",
+    "features",
+    "fit_decay",
+    "fit_on_twin",
+    "fit_proposed",
+    "fit_static_lugre",
+    "load_dataset",
+    "loaded",
+    "lugre_system",
+    "motor_torque",
+    "peak_errors",
+    "point_of",
+    "printed_lugre",
+    "printed_peaks",
+    "proposed_system",
+    "pulley_reactions",
+    "reactions",
+    "reconstructed",
+    "relative_load",
+    "schedule",
+    "simulate_run",
+    "torque_of",
+    "torsional_stiffness",
+    "twin_map",
+    "viscous_factor",
+]
