@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tendonlab.papers.s0 import bearings, bench, drive, fits, maps, models, runs, twin
+from tendonlab.papers.s0 import bearings, bench, differences, drive, evidence, fits, maps, models, runs, twin
 from tendonlab.procedures import friction_map, steady_segment, velocity, wavelet_denoise
 
 STARTS = 12  # of the global search: enough to find the optimum from several of them
@@ -228,3 +228,31 @@ def test_stiffness_falls_with_torque_and_rises_with_preload(name: str) -> None:
     by_preload = [drive.torsional_stiffness(of, load_torque=2, pretension=t) for t in np.linspace(60, 300, 25)]
     assert np.all(np.diff(by_torque) < 0)
     assert np.all(np.diff(by_preload) > 0)
+
+
+def test_the_papers_own_numbers_bound_the_preload() -> None:
+    """Section 2: two independent bounds, 20.6 and 18.1 N."""
+    assert evidence.largest_preload("C35P75GX") == pytest.approx(20.6, abs=0.05)
+    assert evidence.largest_preload("C25P104GX") == pytest.approx(18.1, abs=0.05)
+
+
+def test_peaks_follow_what_the_bearings_carry_over_both_transmissions() -> None:
+    """Section 2: in order but for one near tie."""
+    rows = evidence.peaks_and_loads()
+    assert rows["carried"].to_numpy() == pytest.approx([171, 252, 265, 334, 379, 494], abs=0.5)
+    fall = -np.diff(rows["peak"])
+    assert np.sum(fall > 0) == 1
+    assert fall.max() < 0.003
+
+
+def test_pure_bearing_friction_does_not_explain_the_load_effect() -> None:
+    """Section 6: it would take some 50 times the catalogue's coefficient."""
+    found = [evidence.bearing_coefficient(transmission) for transmission in TRANSMISSIONS]
+    assert found == pytest.approx([0.063, 0.090], abs=1e-3)
+    assert min(found) > 40 * evidence.CATALOGUE_COEFFICIENT
+
+
+def test_every_printed_number_is_met_within_its_tolerance() -> None:
+    found = differences()
+    assert len(found) > 50
+    assert found[~found["within"]].empty

@@ -3,7 +3,8 @@
 `bench` has the rig, `bearings` the reactions and the relative load (9), `drive` the drive (7, 8), its stiffness and
 the dynamic LuGre model (2), `models` the static LuGre curve (3) and the load-and-ratio model (11), `fits` their fits,
 `twin` and `runs` the reconstructed bench, `maps` what is read off friction maps, `experiments` the twin as a dataset,
-`figures` and `drawings` the figures, `differences` what the paper prints beside what comes out here."""
+`evidence` what its numbers say, `figures` and `drawings` the figures, `comparison` what the paper prints beside what
+comes out here."""
 
 from tendonlab.papers.s0.bearings import (
     Reactions,
@@ -14,8 +15,9 @@ from tendonlab.papers.s0.bearings import (
     relative_load,
 )
 from tendonlab.papers.s0.bench import LOADS, TRANSMISSIONS, Configuration, configuration, configurations, loaded
-from tendonlab.papers.s0.differences import differences
+from tendonlab.papers.s0.comparison import differences
 from tendonlab.papers.s0.drive import dynamic_lugre, motor_torque, torsional_stiffness, viscous_factor
+from tendonlab.papers.s0.evidence import bearing_coefficient, largest_preload, peaks_and_loads
 from tendonlab.papers.s0.experiments import load_dataset, lugre_system, proposed_system
 from tendonlab.papers.s0.fits import Fit, fit_decay, fit_on_twin, fit_proposed, fit_static_lugre
 from tendonlab.papers.s0.maps import absolute_error, features, peak_errors, printed_peaks, twin_map
@@ -32,6 +34,7 @@ __all__ = [
     "Proposed",
     "Reactions",
     "absolute_error",
+    "bearing_coefficient",
     "cable_pull",
     "capstan_reactions",
     "configuration",
@@ -43,11 +46,13 @@ __all__ = [
     "fit_on_twin",
     "fit_proposed",
     "fit_static_lugre",
+    "largest_preload",
     "load_dataset",
     "loaded",
     "lugre_system",
     "motor_torque",
     "peak_errors",
+    "peaks_and_loads",
     "point_of",
     "printed_lugre",
     "printed_peaks",
