@@ -133,7 +133,8 @@ def test_the_load_and_ratio_model_beats_lugre_on_the_twin(transmission: str) -> 
 
 
 def test_what_the_twin_leaves_to_both_models_is_the_decay() -> None:
-    """Section 6: a viscous part that fades takes most of what is left, and brings the maximum back to 86 rad/s."""
+    """Section 6: a viscous part that fades takes most of what is left, and brings the maximum of the largest load back
+    to 86 or 87 rad/s; those of the lighter ones come to lie at 82 to 85, where eq. 11 alone has none."""
     for transmission in TRANSMISSIONS:
         speed, load, torque = twin.points(transmission)
         ratio = bench.configuration(transmission).ratio()
@@ -147,7 +148,8 @@ def test_what_the_twin_leaves_to_both_models_is_the_decay() -> None:
         for name in bench.LOADS:
             at = bearings.relative_load(bench.loaded(transmission, name))
             peaks, _ = maps.features(maps.FINE, found.model.torque(maps.FINE, load=at, ratio=ratio))
-            assert 85 <= peaks[-1] <= 88
+            assert 86 <= peaks[-1] <= 87 if name == "D4M" else 81 <= peaks[-1] <= 86
+            assert maps.features(maps.FINE, start.torque(maps.FINE, load=at, ratio=ratio))[0].max(initial=0) < 30
 
 
 @pytest.mark.parametrize("speed", [105.0, -40.0, 20.0])
@@ -158,7 +160,7 @@ def test_speeds_are_found_and_means_of_runs_settle(speed: float) -> None:
     time = run.index.to_numpy(dtype=float)
     rate = velocity(time, wavelet_denoise(run["input_angle"], level=None))[steady_segment(time, run["input_angle"])]
     assert rate.mean() == pytest.approx(speed, rel=5e-3)
-    points = [runs.point_of(runs.simulate_run(of, speed=speed, seed=rng)) for _ in range(20)]
+    points = [runs.point_of(runs.simulate_run(of, speed=speed, travel=60.0, seed=rng)) for _ in range(20)]
     row = friction_map(points).iloc[0]
     assert row["speed"] == pytest.approx(speed, rel=5e-3)
     assert row["sd_of_mean"] == pytest.approx(row["sd"] / np.sqrt(20), rel=1e-12)
@@ -183,7 +185,7 @@ def test_the_mean_of_many_runs_scatters_less_by_the_root_of_their_number() -> No
             "C35P75GX",
             (
                 (1, 2.1943, 3.2330, 4.2716),
-                (1.584, 2.512, 3.457, 4.444),
+                (1.584, 2.512, 3.457, 4.443),
                 (2.646, 3.287, 4.055, 4.923),
                 (12.28, 12.43, 12.65, 12.96),
             ),
@@ -205,9 +207,7 @@ def test_relative_loads(transmission: str, rows: tuple[tuple[float, ...], ...]) 
         found = [
             bearings.relative_load(bench.loaded(transmission, load), pretension=pretension) for load in bench.LOADS
         ]
-        assert found == pytest.approx(
-            row, rel=0, abs=5.1e-5 if pretension == 0 else 5.1e-4 if pretension < 100 else 5.1e-3
-        )
+        assert found == pytest.approx(row, rel=0, abs={0: 5e-5, 100: 5e-3}.get(pretension, 5e-4))
 
 
 def test_relative_loads_of_all_configurations() -> None:

@@ -27,7 +27,7 @@ struct LoadAndRatio {
 
   static constexpr auto parameters() {
     return std::tuple{parameter(&LoadAndRatio::coulomb, "coulomb", Dimension::effort, Purpose::amplitude, 0.05, 0.0,
-                                inf, "kinetic friction per 1 + relative load, at the reference speed"),
+                                inf, "kinetic friction at the reference speed, per one plus relative load"),
                       parameter(&LoadAndRatio::at_rest, "static_friction", Dimension::effort, Purpose::amplitude, 0.2,
                                 0.0, inf, "static friction, whatever the load"),
                       parameter(&LoadAndRatio::falloff, "stribeck_velocity", Dimension::flow, Purpose::shape, 0.4, 1e-9,
