@@ -23,8 +23,8 @@ def motor_diagram(ax: Axes) -> Axes:
     ax.plot(0, 0, "+", color=BODY, ms=10)
     _arrow(ax, (-1.45, 1.0), (-1.45, 0.1), PUSH)
     _arrow(ax, (1.45, -1.0), (1.45, -0.1), PUSH)
-    ax.text(-1.38, 0.75, "$F_1$", color=PUSH)
-    ax.text(1.22, -0.85, "$F_2$", color=PUSH)
+    ax.text(-1.75, 0.75, "$F_1$", color=PUSH)
+    ax.text(1.55, -0.85, "$F_2$", color=PUSH)
     ax.annotate(
         "",
         (-0.35, -0.62),
@@ -36,7 +36,7 @@ def motor_diagram(ax: Axes) -> Axes:
         ax.annotate("", (0, 0.72), (x, 0.72), arrowprops={"arrowstyle": "<->", "color": "0.5", "lw": 0.8})
         ax.text(x / 2, 0.77, name, ha="center", color="0.3")
     ax.text(0, -1.3, "$T_m = F_1 L_1 + F_2 L_2$   (eq. 5)", ha="center")
-    ax.set(xlim=(-1.9, 1.9), ylim=(-1.5, 1.15), aspect="equal", title="Fig. 3  Motor on its load cells")
+    ax.set(xlim=(-2.0, 2.0), ylim=(-1.5, 1.15), aspect="equal", title="Fig. 3  Motor on its load cells")
     return _blank(ax)
 
 
@@ -108,7 +108,7 @@ def _beam(ax: Axes, shaft: Shaft, forces: list[Force]) -> None:
     """The shaft as a line, bearings as triangles, forces as arrows whose length follows the root of the force."""
     longest = max(shaft.end, shaft.disc or 0.0)
     ax.plot([0, 1e3 * longest], [0, 0], color=BODY, lw=3, solid_capstyle="butt")
-    ax.plot([0, 1e3 * shaft.bearing], [0, 0], "^", color="k", ms=9, zorder=5)
+    ax.plot([0, 1e3 * shaft.bearing], [0, 0], "o", color="k", mfc="w", ms=7, zorder=5)
     largest = max(abs(f[1]) for f in forces)
     for at, force, label, color in forces:
         tip, length = 1e3 * at, 0.35 + 0.65 * (abs(force) / largest) ** 0.5
@@ -118,7 +118,8 @@ def _beam(ax: Axes, shaft: Shaft, forces: list[Force]) -> None:
     points = {"A": 0.0, "B": shaft.bearing, "cg": shaft.gravity, "D": shaft.cable}
     for label, at in (points if shaft.disc is None else {**points, "E": shaft.disc}).items():
         ax.plot(1e3 * at, 0, "|", color=BODY, ms=8)
-        ax.text(1e3 * at, 0.09, label, fontsize=8, ha="center", color="0.3")
+        lifted = any(force > 0 and abs(where - at) < 1e-6 for where, force, *_ in forces)
+        ax.text(1e3 * at, 0.13 if lifted else -0.3, label, fontsize=8, ha="center", color="0.3")
     ax.set(xlim=(-8, 1e3 * longest + 45), ylim=(-1.25, 1.25), xlabel="distance from bearing A (mm)", yticks=[])
     for side in ("left", "right", "top"):
         ax.spines[side].set_visible(False)

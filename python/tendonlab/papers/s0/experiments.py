@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +71,47 @@ def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
         experiments=tuple(experiments),
         path=Path(),
     )
+
+
+def held_out(rig: Dataset, models: Mapping[str, Callable[[np.ndarray, float], np.ndarray]]) -> pd.DataFrame:
+    """RMS error of models of speed, rad/s, and relative load on the maps held out, N·m, and the `shrinkage` of the gap
+    over the noise from the first model on."""
+    noise = rig.signals["friction_torque"].noise_sd or 0.0
+    errors = {
+        name: np.concatenate([_error(model, experiment) for experiment in rig.test]) for name, model in models.items()
+    }
+    rms = pd.Series({name: float(np.sqrt(np.mean(np.square(e)))) for name, e in errors.items()})
+    gap = np.sqrt(np.maximum(rms**2 - noise**2, 0.0))
+    return pd.DataFrame({"rms": rms, "shrinkage": 1 - gap / gap.iloc[0]})
+
+
+def training_points(rig: Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Speed rad/s, relative load 1 and friction torque N·m of all points to fit, shape (n,) each."""
+    parts = [
+        (e.data["speed"], np.full(len(e.data), e.conditions["relative_load"]), e.data["friction_torque"])
+        for e in rig.train
+    ]
+    speed, load, torque = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return speed, load, torque
+
+
+def partial_correlations(rig: Dataset, model: Lugre) -> pd.Series[float]:
+    """Of what `model` leaves on the maps to fit, along the motion: correlation with relative load, speed (magnitude) and
+    direction, each at given values of the two others. A steady point has no position."""
+    speed, load, torque = training_points(rig)
+    residual = np.sign(speed) * (torque - model.torque(speed))
+    causes = {"relative load": load, "speed": np.abs(speed), "direction": np.sign(speed)}
+    found = {}
+    for name, cause in causes.items():
+        others = np.column_stack([np.ones_like(speed), *(c for other, c in causes.items() if other != name)])
+        left = [y - others @ np.linalg.lstsq(others, y, rcond=None)[0] for y in (residual, cause)]
+        found[name] = float(np.corrcoef(*left)[0, 1])
+    return pd.Series(found)
+
+
+def _error(model: Callable[[np.ndarray, float], np.ndarray], experiment: Experiment) -> np.ndarray:
+    data = experiment.data
+    return model(data["speed"].to_numpy(), experiment.conditions["relative_load"]) - data["friction_torque"].to_numpy()
 
 
 def _experiment(transmission: str, load: str, k: int, *, ratio: float, rng: np.random.Generator) -> Experiment:

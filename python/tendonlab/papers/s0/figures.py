@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Model = Callable[[Configuration, np.ndarray], np.ndarray]
 COLOURS = {"none": "#1b1f24", "D": "#0072b2", "D2M": "#d55e00", "D4M": "#009e73"}
 WORDS = {"none": "no load", "D": "disc", "D2M": "disc and 2 masses", "D4M": "disc and 4 masses"}
+HIGHEST = 0.26  # N·m, top of Figs 10 to 16: one scale for all
 MARKS = ("o", "s", "^", "D")
 SPEED, TORQUE, ERROR = "input speed (rad/s)", "friction torque (N·m)", "absolute error (N·m)"
 
@@ -47,7 +48,7 @@ def stiffness_against_preload(ax: Axes, of: Configuration, *, torques: Sequence[
         k = [torsional_stiffness(of, load_torque=torque, pretension=t) for t in pretension]
         ax.plot(pretension, k, label=f"{torque:g} N·m")
     ax.set(xlabel="preload (N)", ylabel="torsional stiffness (N·m/rad)", title="Fig. 5  Stiffness against preload")
-    ax.legend(title="torque")
+    ax.legend(title="torque", loc="lower right")
     return ax
 
 
@@ -81,9 +82,8 @@ def compare_maps(ax: Axes, maps: Mapping[str, pd.DataFrame], *, title: str) -> A
     """Figs 10 to 16: maps of several configurations on one pair of axes, in the positive direction."""
     for (name, points), color, mark in zip(maps.items(), COLOURS.values(), MARKS, strict=False):
         draw_map(ax, points[points["speed"] > 0], label=name, color=color, mark=mark)
-    ax.set(xlabel=SPEED, ylabel=TORQUE, title=title)
-    ax.set_ylim(bottom=0)
-    ax.legend()
+    ax.set(xlabel=SPEED, ylabel=TORQUE, title=title, ylim=(0, HIGHEST))
+    ax.legend(loc="lower right")
     return ax
 
 
@@ -103,7 +103,7 @@ def curve_and_map(ax: Axes, name: str, points: pd.DataFrame, model: Model, *, la
     both = np.concatenate([-FINE[::-1], FINE])
     ax.plot(both, model(configuration(name), both), color=COLOURS["D2M"], label=label)
     ax.set(xlabel=SPEED, ylabel=TORQUE, title=title)
-    ax.legend()
+    ax.legend(loc="lower right")
     return ax
 
 
@@ -115,6 +115,6 @@ def errors_of(ax: Axes, transmission: str, maps: Mapping[str, pd.DataFrame], mod
         error = absolute_error(of, model, points[points["speed"] > 0])
         ax.plot(error.index, error, marker=mark, ms=3, lw=0.9, color=COLOURS[load], label=WORDS[load])
     ax.set(xlabel=SPEED, ylabel=ERROR, title=title)
-    ax.set_ylim(bottom=0)
-    ax.legend()
+    ax.set_ylim(0, 1.35 * ax.get_ylim()[1])
+    ax.legend(ncols=2, loc="upper center")
     return ax

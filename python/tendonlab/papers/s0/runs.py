@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scipy.signal import lsim
+from scipy.signal import lfilter
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0 import twin
@@ -88,4 +88,7 @@ def point_of(run: pd.DataFrame) -> MapPoint:
 
 def _creep(time: np.ndarray, force: np.ndarray, cell: LoadCell) -> np.ndarray:
     """Creep of a cell, N: a first-order lag of a small share of the force."""
-    return np.asarray(lsim(([cell.creep], [cell.creep_time, 1.0]), force, time)[1])
+    share = (time[1] - time[0]) / cell.creep_time
+    decay = np.exp(-share)
+    late = 1 - (1 - decay) / share  # of the later of two samples that a straight line joins
+    return np.asarray(cell.creep * lfilter([late, 1 - decay - late], [1.0, -decay], force))
