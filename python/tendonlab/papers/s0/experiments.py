@@ -81,23 +81,20 @@ def held_out(rig: Dataset, models: Mapping[str, Callable[[np.ndarray, float], np
         name: np.concatenate([_error(model, experiment) for experiment in rig.test]) for name, model in models.items()
     }
     rms = pd.Series({name: float(np.sqrt(np.mean(np.square(e)))) for name, e in errors.items()})
-    gap = np.sqrt(np.maximum(rms**2 - noise**2, 0.0))
-    return pd.DataFrame({"rms": rms, "shrinkage": 1 - gap / gap.iloc[0]})
+    gap = np.sqrt(np.maximum(rms.to_numpy() ** 2 - noise**2, 0.0))
+    return pd.DataFrame({"rms": rms, "shrinkage": 1 - gap / gap[0]})
 
 
 def training_points(rig: Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Speed rad/s, relative load 1 and friction torque N·m of all points to fit, shape (n,) each."""
-    parts = [
-        (e.data["speed"], np.full(len(e.data), e.conditions["relative_load"]), e.data["friction_torque"])
-        for e in rig.train
-    ]
-    speed, load, torque = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return speed, load, torque
+    loads = [np.full(len(e.data), e.conditions["relative_load"]) for e in rig.train]
+    speed, torque = (np.concatenate([e.data[name] for e in rig.train]) for name in ("speed", "friction_torque"))
+    return speed, np.concatenate(loads), torque
 
 
 def partial_correlations(rig: Dataset, model: Lugre) -> pd.Series[float]:
-    """Of what `model` leaves on the maps to fit, along the motion: correlation with relative load, speed (magnitude) and
-    direction, each at given values of the two others. A steady point has no position."""
+    """Of what `model` leaves on the maps to fit, along the motion: correlation with relative load, speed (magnitude)
+    and direction, each at given values of the two others. A steady point has no position."""
     speed, load, torque = training_points(rig)
     residual = np.sign(speed) * (torque - model.torque(speed))
     causes = {"relative load": load, "speed": np.abs(speed), "direction": np.sign(speed)}
@@ -111,7 +108,8 @@ def partial_correlations(rig: Dataset, model: Lugre) -> pd.Series[float]:
 
 def _error(model: Callable[[np.ndarray, float], np.ndarray], experiment: Experiment) -> np.ndarray:
     data = experiment.data
-    return model(data["speed"].to_numpy(), experiment.conditions["relative_load"]) - data["friction_torque"].to_numpy()
+    found = model(data["speed"].to_numpy(), experiment.conditions["relative_load"])
+    return np.asarray(found - data["friction_torque"].to_numpy())
 
 
 def _experiment(transmission: str, load: str, k: int, *, ratio: float, rng: np.random.Generator) -> Experiment:
