@@ -170,12 +170,12 @@ def test_speeds_are_found_and_means_of_runs_settle(speed: float) -> None:
 
 
 def test_the_mean_of_many_runs_scatters_less_by_the_root_of_their_number() -> None:
-    """C6, over 400 maps."""
+    """C6, over 60 maps of 22 points: the mean of so many scatters is known to 2 %."""
     of = bench.configuration("C35P75GX-D")
     scatter = {
-        n: np.std([twin.measured(of, twin.SPEEDS, num_runs=n, seed=k)[0] for k in range(400)], axis=0) for n in (1, 20)
+        n: np.std([twin.measured(of, twin.SPEEDS, num_runs=n, seed=k)[0] for k in range(60)], axis=0) for n in (1, 20)
     }
-    assert scatter[1] / scatter[20] == pytest.approx(np.sqrt(20), rel=0.2)  # 400 draws: 3.5 % each, 22 points
+    assert np.mean(scatter[1] / scatter[20]) == pytest.approx(np.sqrt(20), rel=0.07)
 
 
 @pytest.mark.parametrize(
@@ -186,7 +186,7 @@ def test_the_mean_of_many_runs_scatters_less_by_the_root_of_their_number() -> No
             (
                 (1, 2.1943, 3.2330, 4.2716),
                 (1.584, 2.512, 3.457, 4.443),
-                (2.646, 3.287, 4.055, 4.923),
+                (2.646, 3.287, 4.054, 4.923),
                 (12.28, 12.43, 12.65, 12.96),
             ),
         ),

@@ -48,7 +48,8 @@ def stiffness_against_preload(ax: Axes, of: Configuration, *, torques: Sequence[
         k = [torsional_stiffness(of, load_torque=torque, pretension=t) for t in pretension]
         ax.plot(pretension, k, label=f"{torque:g} N·m")
     ax.set(xlabel="preload (N)", ylabel="torsional stiffness (N·m/rad)", title="Fig. 5  Stiffness against preload")
-    ax.legend(title="torque", loc="lower right")
+    ax.set_ylim(bottom=0)
+    ax.legend(title="torque", loc="lower right", ncols=4)
     return ax
 
 
@@ -99,7 +100,7 @@ def loads_of(ax: Axes, transmission: str, maps: Mapping[str, pd.DataFrame], *, t
 
 def curve_and_map(ax: Axes, name: str, points: pd.DataFrame, model: Model, *, label: str, title: str) -> Axes:
     """Figs 19, 22: a model over the map of one configuration."""
-    draw_map(ax, points, label=f"map of {name} (twin)", color=COLOURS["none"])
+    draw_map(ax, points, label="map (twin)", color=COLOURS["none"])
     both = np.concatenate([-FINE[::-1], FINE])
     ax.plot(both, model(configuration(name), both), color=COLOURS["D2M"], label=label)
     ax.set(xlabel=SPEED, ylabel=TORQUE, title=title)
