@@ -254,8 +254,8 @@ class TendonTransmission:
             reducer = self.reducers[i] if own else None
             ratio = 1.0 if reducer is None else reducer.ratio
             values[f"motor_radius_{i + 1}"] = float(self.motor_radius[i]) if own else 1.0
-            values[f"reducer_ratio_{i + 1}"] = ratio
-            values[f"reducer_efficiency_{i + 1}"] = 1.0 if reducer is None else reducer.efficiency
+            values[f"reducer_ratio_{i + 1}"] = float(ratio)
+            values[f"reducer_efficiency_{i + 1}"] = 1.0 if reducer is None else float(reducer.efficiency)
             for j in range(i + 1):
                 radius = float(self.radius[i, j]) if own else float(i == j)
                 values[f"radius_{i + 1}_{j + 1}"] = radius / ratio if i == j else radius

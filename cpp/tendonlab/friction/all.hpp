@@ -1,6 +1,7 @@
 #pragma once
 #include "tendonlab/friction/asymmetry.hpp"
 #include "tendonlab/friction/coulomb.hpp"
+#include "tendonlab/friction/efficiency.hpp"
 #include "tendonlab/friction/load_dependence.hpp"
 #include "tendonlab/friction/presliding.hpp"
 #include "tendonlab/friction/stribeck.hpp"
@@ -8,4 +9,6 @@
 
 namespace tendonlab::friction {
 using All = Laws<Coulomb, Viscous, Stribeck, Presliding, LoadDependence, Asymmetry>;
-}
+/// What a gear loses.
+using Gears = Laws<Efficiency>;
+}  // namespace tendonlab::friction

@@ -52,14 +52,15 @@ T beside_loss(const T& given, double sign, const Loss& loss) {
 enum class AtRest { drive, mean, lossless };
 
 /// Torque that a reducer's input, times its ratio, has to give beyond `output`. `resist`: friction of a Sliding.
-template <class S, class Resist>
-S reducer_loss(const Resist& resist, const S& output, double velocity, AtRest at_rest) {
+template <class S, class T, class Resist>
+S reducer_loss(const Resist& resist, const S& output, const T& velocity, AtRest at_rest) {
   const auto sign = [](double a) { return static_cast<double>((a > 0) - (a < 0)); };
+  const double moving = sign(plain(velocity));
   Sliding<S> at;
-  at.velocity = constant<S>(velocity);
+  at.velocity = lift<S>(velocity);
   at.load = output;
-  at.direction = velocity != 0.0 ? sign(velocity) : sign(plain(output));  // at rest the driving branch, as printed
-  if (velocity != 0.0 || at_rest == AtRest::drive) return resist(at);
+  at.direction = moving != 0.0 ? moving : sign(plain(output));  // at rest the driving branch, as printed
+  if (moving != 0.0 || at_rest == AtRest::drive) return resist(at);
   if (at_rest == AtRest::lossless) return constant<S>(0.0);
   const S driving = resist(at);
   at.direction = -at.direction;

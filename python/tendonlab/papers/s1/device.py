@@ -21,7 +21,7 @@ def example_device(*, reducers: bool = True) -> TendonTransmission:
     rows = table("S1_example_device")
     radius, losses = _triangle(rows, "r", "joint ", 1), {name: _triangle(rows, name, "link ", 0) for name in _LOSSES}
     motor, ratio, efficiency = (_column(rows, name) for name in ("r_m", "kappa", "eta_d"))
-    fitted = [Reducer(efficiency=e, ratio=k) if e < 1 else None for e, k in zip(efficiency, ratio, strict=True)]
+    fitted = [Reducer(efficiency=float(e), ratio=float(k)) if e < 1 else None for e, k in zip(efficiency, ratio, strict=True)]
     return TendonTransmission(
         radius=radius,
         motor_radius=motor,
