@@ -1,7 +1,7 @@
 """Coupled tendon transmissions: how motion and tension travel from the motors over idle pulleys to the joints (S1).
 
-Transmission i starts at its motor on the base, crosses the joints before its own over idle pulleys and ends on the driven
-pulley of joint i. A tension is the net one of its loop, the difference between both runs, and may be negative."""
+Transmission i starts at its motor on the base, crosses the joints before its own over idle pulleys and ends on the
+driven pulley of joint i. A tension is the net one of a loop, the difference between both runs, and may be negative."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def back_driven_efficiency(efficiency: ArrayLike) -> np.ndarray:
 
 @dataclass(frozen=True, kw_only=True)
 class Reducer:
-    """A reducer of `ratio` (input turns a turn of the output) on a driven pulley. `efficiency` in (0.5, 1] while it drives
-    its load; `driven_back` the same while the load drives it, by default S1 eq. 10. `allow_self_locking` admits what the
-    load cannot drive back. Raises ParameterError. Source: S1 eqs 9, 10."""
+    """A reducer of `ratio` (input turns a turn of the output) on a driven pulley. `efficiency` in (0.5, 1] while it
+    drives its load; `driven_back` the same while the load drives it, by default S1 eq. 10. `allow_self_locking` admits
+    what the load cannot drive back. Raises ParameterError. Source: S1 eqs 9, 10."""
 
     efficiency: float
     ratio: float = 1.0
@@ -66,8 +66,8 @@ class Reducer:
         return 1.0 if self.loss == 0.0 else (1.0 - self.back_driven) / self.loss
 
     def output_torque(self, input_torque: ArrayLike, velocity: ArrayLike) -> np.ndarray:
-        """Torque given to the output, N·m, from that at the input, N·m, at the output's velocity, rad/s; arrays broadcast.
-        Raises NumericalError where it locks itself. Source: S1 eq. 9."""
+        """Torque given to the output, N·m, from that at the input, N·m, at the output's velocity, rad/s; arrays
+        broadcast. Raises NumericalError where it locks itself. Source: S1 eq. 9."""
         return self._alone(input_torque, velocity, to_motors=False)
 
     def input_torque(self, output_torque: ArrayLike, velocity: ArrayLike) -> np.ndarray:
@@ -132,12 +132,12 @@ class Propagation:
     @property
     def loss(self) -> np.ndarray:
         """Tension lost on each branch (…, n, n), N. Source: S1 eq. 6."""
-        return np.tril(self.tension[..., :-1] - self.tension[..., 1:])
+        return np.asarray(np.tril(self.tension[..., :-1] - self.tension[..., 1:]))
 
     @property
     def branch_power(self) -> np.ndarray:
         """Power lost on all branches (…,), W."""
-        return np.sum(self.loss * self.branch_velocity, axis=(-2, -1))
+        return np.asarray(np.sum(self.loss * self.branch_velocity, axis=(-2, -1)))
 
 
 @dataclass(frozen=True)
@@ -152,18 +152,18 @@ class Kinematics:
 
     def joint_to_motor(self, joint: ArrayLike) -> np.ndarray:
         """Motion of the motors (…, n) from that of the joints. Source: S1 eqs 1, 2."""
-        return self.branches(joint)[..., 0] / self.of.motor_radius
+        return np.asarray(self.branches(joint)[..., 0] / self.of.motor_radius)
 
     def branches(self, joint: ArrayLike) -> np.ndarray:
-        """Displacements, m, or velocities, m/s, of all branches (…, n, n) from motion of the joints. Source: S1 eq. 2."""
+        """Displacements, m, or velocities, m/s, of branches (…, n, n) from motion of the joints. Source: S1 eq. 2."""
         return self.of._rows(self.of.core.branch_motion, joint)
 
 
 @dataclass(frozen=True)
-class StaticsOf:
-    """Torques and tensions. Models of the losses: "ideal" none, "eq11" in proportion to tension and speed, "eq12" constant
-    and viscous, "full" all three; reducers lose in each. `sign_velocity`: above 0 the sign of a branch's velocity is
-    tanh(S'/sign_velocity), m/s, else it is sharp, 0 at rest."""
+class Statics:
+    """Torques and tensions. Models of the losses: "ideal" none, "eq11" in proportion to tension and speed, "eq12"
+    constant and viscous, "full" all three; reducers lose in each. `sign_velocity`: above 0 the sign of a branch's
+    velocity is tanh(S'/sign_velocity), m/s, else it is sharp, 0 at rest."""
 
     of: TendonTransmission
 
@@ -199,7 +199,7 @@ class TendonTransmission:
     motor_reducers: Sequence[Reducer | None] = ()
     at_rest: AtRest = "drive"
     kinematics: Kinematics = field(init=False, repr=False, compare=False)
-    statics: StaticsOf = field(init=False, repr=False, compare=False)
+    statics: Statics = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         radius, motor = np.asarray(self.radius, dtype=float), np.asarray(self.motor_radius, dtype=float)
@@ -207,7 +207,9 @@ class TendonTransmission:
         if motor.ndim != 1 or n < 1 or not np.all(np.isfinite(motor) & (motor != 0)):
             raise ParameterError(f"motor_radius = {motor.tolist()}: expected a list of lengths other than 0, m")
         if radius.shape != (n, n) or not np.all(np.isfinite(radius)) or np.any(np.triu(radius, 1) != 0):
-            raise ParameterError(f"radius = {radius.tolist()}: expected a lower triangular array of shape ({n}, {n}), m")
+            raise ParameterError(
+                f"radius = {radius.tolist()}: expected a lower triangular array of shape ({n}, {n}), m"
+            )
         if np.any(np.diag(radius) == 0):
             raise ParameterError(f"radius = {radius.tolist()}: expected no 0 on the diagonal, the driven pulleys")
         losses = BranchLosses.none(n) if self.losses is NO_LOSSES else self.losses
@@ -219,7 +221,7 @@ class TendonTransmission:
             made[name] = tuple(given) or (None,) * n
             if len(made[name]) != n:
                 raise ParameterError(f"{name}: {len(made[name])} given, expected {n}, None where there is none")
-        made |= {"kinematics": Kinematics(self), "statics": StaticsOf(self)}
+        made |= {"kinematics": Kinematics(self), "statics": Statics(self)}
         for name, value in made.items():
             object.__setattr__(self, name, value)
 

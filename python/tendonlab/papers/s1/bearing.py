@@ -16,9 +16,9 @@ RPM = np.pi / 30.0  # rad/s
 class BallBearing:
     """A ball bearing: it holds torques up to alpha_b p at rest, and resists with beta_b p + h(n) when it turns.
 
-    `alpha_b`, `beta_b`: torque per load p, m. `viscosity` of the oil, mm²/s, `mean_diameter`, mm, and the factor `f0` are
-    those of the constructor's catalogue; h is then in N·m and n in rad/s here. The law jumps by 0.8 % at its transition
-    speed; `continuous` closes that. Raises ParameterError. Source: S1 eqs 7, 8 (Palmgren's law)."""
+    `alpha_b`, `beta_b`: torque per load p, m. `viscosity` of the oil, mm²/s, `mean_diameter`, mm, and the factor `f0`
+    are those of the constructor's catalogue; h is in N·m and n in rad/s all the same. The law jumps by 0.8 % at its
+    transition speed; `continuous` closes that. Raises ParameterError. Source: S1 eqs 7, 8 (Palmgren's law)."""
 
     f0: float
     viscosity: float

@@ -1,4 +1,4 @@
-"""Block diagrams that can be evaluated and drawn: motion (fig. 3), statics with losses (fig. 4), the force display (fig. 6)."""
+"""Block diagrams that can be evaluated and drawn: motion (fig. 3), statics (fig. 4), force display (fig. 6) of S1."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Shape = str  # "input", "gain", "sum", "block", "output"
 
 @dataclass(frozen=True, kw_only=True)
 class Block:
-    """A block of a diagram at place (`x`, `y`): it gives `function` of the sum of its `sources`, an input what is given."""
+    """A block at (`x`, `y`) of a diagram: it gives `function` of the sum of its `sources`, an input what it gets."""
 
     name: str
     label: str
@@ -38,7 +38,9 @@ class BlockDiagram:
         for block in self.blocks:
             missing = set(block.sources) - known
             if missing or block.name in known:
-                raise ParameterError(f"block {block.name!r}: expected a new name and earlier blocks as sources, {missing}")
+                raise ParameterError(
+                    f"block {block.name!r}: expected a new name and earlier blocks as sources, {missing}"
+                )
             known.add(block.name)
 
     def evaluate(self, inputs: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
@@ -57,7 +59,7 @@ class BlockDiagram:
 
 
 def kinematics_diagram(transmission: TendonTransmission) -> BlockDiagram:
-    """Direct kinematics: motor angles `q_m1` … to joint angles `q_1` …, over the branches `S_i_j`. Source: S1 fig. 3."""
+    """Direct kinematics: motor angles `q_m1` … to joint angles `q_1` … over the branches `S_i_j`. Source: S1 fig. 3."""
     radius, blocks = transmission.radius, []
     for i in range(transmission.num_joints):
         y, r = -2.0 * i, float(transmission.motor_radius[i])
@@ -73,9 +75,7 @@ def kinematics_diagram(transmission: TendonTransmission) -> BlockDiagram:
             total = Block(name=f"S_{i + 1}_{j + 1}", label=r"$\Sigma$", shape="sum", x=x, y=y, sources=sources)
             blocks += [gain, total]
         last, inverse = f"S_{i + 1}_{i}", 1.0 / float(radius[i, i])
-        blocks.append(
-            _gain(f"q_{i + 1}", rf"$1/r_{i + 1}^{i + 1}$", inverse, x=_column(i) - 1.1, y=y, sources=(last,))
-        )
+        blocks.append(_gain(f"q_{i + 1}", rf"$1/r_{i + 1}^{i + 1}$", inverse, x=_column(i) - 1.1, y=y, sources=(last,)))
         out = Block(
             name=f"joint_{i + 1}", label=rf"$q_{i + 1}$", shape="output", x=_column(transmission.num_joints), y=y,
             sources=(f"q_{i + 1}",),
@@ -89,9 +89,7 @@ def _column(joint: int) -> float:
 
 
 def _gain(name: str, label: str, factor: float, *, x: float, y: float, sources: tuple[str, ...]) -> Block:
-    return Block(
-        name=name, label=label, shape="gain", x=x, y=y, sources=sources, function=lambda value: factor * value
-    )
+    return Block(name=name, label=label, shape="gain", x=x, y=y, sources=sources, function=lambda value: factor * value)
 
 
 def statics_diagram(

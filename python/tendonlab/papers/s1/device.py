@@ -21,7 +21,9 @@ def example_device(*, reducers: bool = True) -> TendonTransmission:
     rows = table("S1_example_device")
     radius, losses = _triangle(rows, "r", "joint ", 1), {name: _triangle(rows, name, "link ", 0) for name in _LOSSES}
     motor, ratio, efficiency = (_column(rows, name) for name in ("r_m", "kappa", "eta_d"))
-    fitted = [Reducer(efficiency=float(e), ratio=float(k)) if e < 1 else None for e, k in zip(efficiency, ratio, strict=True)]
+    fitted = [
+        Reducer(efficiency=float(e), ratio=float(k)) if e < 1 else None for e, k in zip(efficiency, ratio, strict=True)
+    ]
     return TendonTransmission(
         radius=radius,
         motor_radius=motor,
@@ -36,7 +38,7 @@ def without_tension_loss(device: TendonTransmission) -> TendonTransmission:
 
 
 def gravity(joint_angle: np.ndarray) -> np.ndarray:
-    """Gravity torque that the transmissions must hold (…, 4), N·m [reconstructed]: 6 sin q1, 4 cos q2, 0.8 sin q3, 1.5 cos q4."""
+    """Gravity torque that the transmissions must hold (…, 4), N·m [reconstructed]."""
     q = np.asarray(joint_angle, dtype=float)
     turned = np.stack([np.sin(q[..., 0]), np.cos(q[..., 1]), np.sin(q[..., 2]), np.cos(q[..., 3])], axis=-1)
     return np.asarray(turned * GRAVITY)

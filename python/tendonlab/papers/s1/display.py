@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.papers.s1.arm import Arm
-from tendonlab.papers.s1.device import gravity
 from tendonlab.papers.s1.free_motion import FeedForward
 from tendonlab.routing import TendonTransmission
 
@@ -35,7 +34,9 @@ class Wall:
         n = np.asarray(self.normal)
         return np.asarray(position + max(0.0, self.offset - float(position @ n)) * n)
 
-    def surface_force(self, position: np.ndarray, velocity: np.ndarray, pressed: float) -> tuple[np.ndarray, np.ndarray]:
+    def surface_force(
+        self, position: np.ndarray, velocity: np.ndarray, pressed: float
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Friction F_fr and texture F_T (3,), N, where the object is `pressed` with so many N."""
         n = np.asarray(self.normal)
         along = velocity - (velocity @ n) * n
@@ -60,7 +61,7 @@ class Hand:
     damping: float = 30.0  # N·s/m
 
     def target(self, time: float) -> np.ndarray:
-        """Where the user wants the handle (3,), m: down on the object within half a second, then to and fro along it."""
+        """Where the user wants the handle (3,), m: down on the object in half a second, then to and fro along it."""
         down = 0.05 * min(time / 0.5, 1.0)
         along = np.sin(2 * np.pi * 0.5 * max(time - 0.7, 0.0))
         return np.array([0.294 + 0.04 * along, 0.03 * along, -0.24 - down])
@@ -92,22 +93,20 @@ class ForceDisplay:
     sign_velocity: float = 0.01
 
     def run(self, *, duration: float = 3.0) -> pd.DataFrame:
-        """Indexed by time, s: handle `x`, `y`, `z`, m; `displayed_…`, `felt_…` force of the device on the hand along the
-        axes, N; `depth` behind the surface, m."""
-        q, v, filtered, motor_before = np.array(self.start), np.zeros(4), np.zeros(4), None
+        """Indexed by time, s: handle `x`, `y`, `z`, m; `displayed_…` and `felt_…`, force of the device on the hand
+        along the axes, N; `depth` behind the surface, m."""
+        q, v, filtered = np.array(self.start), np.zeros(4), np.zeros(4)
+        before = self.device.kinematics.joint_to_motor(q)
         rows = []
-        for k in range(round(duration / self.control_time)):
+        for time in self.control_time * np.arange(round(duration / self.control_time)):
             motor = self.device.kinematics.joint_to_motor(q)
-            rate = np.zeros(4) if motor_before is None else (motor - motor_before) / self.control_time
+            rate = (motor - before) / self.control_time
             filtered += (rate - filtered) * self.control_time / (self.filter_time + self.control_time)
-            motor_before = motor
+            before = motor
             command, wanted = self.command(motor, filtered)
-            felt = np.zeros(3)
-            for s in range(self.substeps):
-                now = k * self.control_time + s * self.control_time / self.substeps
-                q, v, force = self._move(now, q, v, command)
-                felt += force / self.substeps
-            rows.append([k * self.control_time, *self.arm.position(q), *wanted, *felt])
+            at, jacobian = self.arm.pose(q)
+            q, v, felt = self._move(time, q, v, at, jacobian, command)
+            rows.append([time, *at, *wanted, *felt])
         columns = ["t", "x", "y", "z", *(f"{name}_{axis}" for name in ("displayed", "felt") for axis in "xyz")]
         frame = pd.DataFrame(rows, columns=columns).set_index("t")
         height = frame[["x", "y", "z"]].to_numpy() @ np.asarray(self.wall.normal)
@@ -115,11 +114,10 @@ class ForceDisplay:
 
     def command(self, motor_angle: np.ndarray, motor_velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """One pass through the blocks of fig. 6: motor torques (4,), N·m, and the force F_d to display (3,), N."""
-        joint = self.device.kinematics.motor_to_joint(motor_angle)
-        joint_velocity = self.device.kinematics.motor_to_joint(motor_velocity)
-        jacobian = self.arm.jacobian(joint)
-        force = self.display_force(self.arm.position(joint), jacobian @ joint_velocity)
-        return self.compensator.motor_torque(joint, joint_velocity, displayed=jacobian.T @ force), force
+        joint, velocity = self.device.kinematics.motor_to_joint(np.stack([motor_angle, motor_velocity]))
+        position, jacobian = self.arm.pose(joint)
+        force = self.display_force(position, jacobian @ velocity)
+        return self.compensator.motor_torque(joint, velocity, displayed=jacobian.T @ force), force
 
     def display_force(self, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """F_d (3,), N, at the handle's position, m, and filtered velocity, m/s. Source: S1 eq. 23."""
@@ -133,12 +131,20 @@ class ForceDisplay:
         return np.asarray(pressed * n + friction + texture)
 
     def _move(
-        self, time: float, q: np.ndarray, v: np.ndarray, command: np.ndarray
+        self,
+        time: float,
+        q: np.ndarray,
+        v: np.ndarray,
+        position: np.ndarray,
+        jacobian: np.ndarray,
+        command: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The device and the hand over one substep; also the force of the device on the hand."""
-        h = self.control_time / self.substeps
-        given = self.device.statics.direct(command, v, sign_velocity=self.sign_velocity).torque
-        jacobian = self.arm.jacobian(q)
-        hand = self.hand.force(time, self.arm.position(q), jacobian @ v)
-        v = v + h * (given - gravity(q) + jacobian.T @ hand) / np.asarray(self.inertia)
-        return q + h * v, v, -hand
+        """The device and the hand over one period of control; also the mean force of the device on the hand."""
+        h, load, felt = self.control_time / self.substeps, self.compensator.gravity(q), np.zeros(3)
+        for s in range(self.substeps):
+            given = self.device.statics.direct(command, v, sign_velocity=self.sign_velocity).torque
+            hand = self.hand.force(time + s * h, position, jacobian @ v)
+            v = v + h * (given - load + jacobian.T @ hand) / np.asarray(self.inertia)
+            q, position = q + h * v, position + h * jacobian @ v
+            felt -= hand / self.substeps
+        return q, v, felt

@@ -1,4 +1,4 @@
-"""Feed-forward of the identified losses, and the torque that a user needs to move the device freely (S1 sec. IV, fig. 7)."""
+"""Feed-forward of the identified losses, and the torque that a user needs to move the device (S1 sec. IV, fig. 7)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pandas as pd
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s1.device import gravity
-from tendonlab.routing import Propagation, TendonTransmission
+from tendonlab.routing import Model, Propagation, TendonTransmission
 
 AMPLITUDE = np.array([0.5, 0.35, 0.4, 0.5])  # rad [reconstructed]
 FREQUENCY = np.array([0.25, 0.2, 0.3, 0.35])  # Hz [reconstructed]
@@ -60,7 +60,7 @@ class FeedForward:
     ) -> np.ndarray:
         """Motor torques (…, n), N·m, at angles, rad, and velocities, rad/s; `displayed`: joint torque to give beside
         gravity, N·m."""
-        model = "full" if self.with_tension_loss else "eq12"
+        model: Model = "full" if self.with_tension_loss else "eq12"
         wanted = self.gravity(joint_angle) + displayed
         statics = self.scaled.statics
         return statics.inverse(wanted, joint_velocity, model=model, sign_velocity=self.sign_velocity).torque

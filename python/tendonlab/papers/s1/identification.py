@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.procedures import steady_averages
 from tendonlab.routing import BranchLosses, Model, TendonTransmission
 
 Strategy = Literal["S1", "S2"]
@@ -55,54 +56,18 @@ def plan_identification(
     return Plan(joint=joint, strategy=strategy, motor_velocity=motors, joint_velocity=moved)
 
 
-def steady_average(log: pd.DataFrame, *, trim: float = 0.1, tolerance: float = 1e-6) -> pd.DataFrame:
-    """One row a plateau of constant commanded speed: mean `speed`, rad/s, and `torque`, N·m, of the motor under test.
+def steady_average(log: pd.DataFrame) -> pd.DataFrame:
+    """One row a plateau of constant speed: `speed`, rad/s, and `torque`, N·m, of the motor, gravity removed.
 
-    `log`: indexed by time, s, with columns `motor_velocity`, `motor_torque` and `joint_angle`, rad. What does not change
-    its sign with the direction at equal angles, gravity above all, is removed: half the difference between a plateau and
-    the one of opposite speed keeps friction. `trim`: share cut from both ends of a plateau. Raises DatasetError where a
-    speed lacks its opposite over the same angles. Source: S1 sec. III-B; the half-difference is reconstructed."""
+    `log`: indexed by time, s, with columns `motor_velocity`, `motor_torque` and `joint_angle`, rad. What does not
+    change its sign with the direction at equal angles, gravity above all, is taken away. Raises DatasetError for a
+    missing column, ParameterError where a speed lacks its opposite over the same angles. Source: S1 sec. III-B; the
+    half-difference is reconstructed."""
     for name in ("motor_velocity", "motor_torque", "joint_angle"):
         if name not in log:
             raise DatasetError(f"{name}: missing; expected columns motor_velocity, motor_torque and joint_angle")
-    velocity = log["motor_velocity"].to_numpy(dtype=float)
-    starts = np.flatnonzero(np.r_[True, np.abs(np.diff(velocity)) > tolerance, True])
-    plateaus = []
-    for begin, end in zip(starts[:-1], starts[1:], strict=True):
-        cut = int(trim * (end - begin))
-        if end - begin - 2 * cut >= 2 and abs(velocity[begin]) > tolerance:
-            plateaus.append(_plateau(log.iloc[begin + cut : end - cut]))
-    rows = []
-    for one in plateaus:
-        other = next((p for p in plateaus if np.isclose(p.speed, -one.speed)), None)
-        if other is None:
-            raise DatasetError(f"motor_velocity = {one.speed:g} rad/s: expected a plateau in the other direction too")
-        rows.append({"speed": one.speed, "torque": 0.5 * one.minus(other), "num_samples": len(one.angle)})
-    if not rows:
-        raise DatasetError("motor_velocity: expected plateaus of constant speed")
-    return pd.DataFrame(rows)
-
-
-@dataclass(frozen=True)
-class _Plateau:
-    speed: float
-    angle: np.ndarray
-    torque: np.ndarray
-
-    def minus(self, other: _Plateau) -> float:
-        """Mean difference of torque at equal angles."""
-        low, high = max(self.angle[0], other.angle[0]), min(self.angle[-1], other.angle[-1])
-        if not high - low > 0.5 * (self.angle[-1] - self.angle[0]):
-            raise DatasetError(f"joint_angle at {self.speed:g} rad/s: expected the range of the opposite direction")
-        at = np.linspace(low, high, 200)
-        difference = np.interp(at, self.angle, self.torque) - np.interp(at, other.angle, other.torque)
-        return float(np.mean(difference))
-
-
-def _plateau(part: pd.DataFrame) -> _Plateau:
-    ordered = part.sort_values("joint_angle")
-    angle, torque = (ordered[name].to_numpy(dtype=float) for name in ("joint_angle", "motor_torque"))
-    return _Plateau(float(part["motor_velocity"].mean()), angle, torque)
+    found = steady_averages(log.index, log["motor_velocity"], log["motor_torque"], position=log["joint_angle"])
+    return found[["speed", "friction", "num_samples"]].rename(columns={"friction": "torque"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,8 +86,8 @@ class MotorFriction:
 
 
 def fit_motor_friction(speed: Sequence[float] | np.ndarray, torque: Sequence[float] | np.ndarray) -> MotorFriction:
-    """Least squares of motor torque, N·m, over sgn and value of motor speed, rad/s. Raises DatasetError where the speeds
-    are fewer than three or all alike in magnitude. Source: S1 eq. 13, with the sign."""
+    """Least squares of motor torque, N·m, over sgn and value of motor speed, rad/s. Raises DatasetError where the
+    speeds are fewer than three or all alike in magnitude. Source: S1 eq. 13, with the sign."""
     v, c = np.asarray(speed, dtype=float), np.asarray(torque, dtype=float)
     if v.shape != c.shape or v.size < 3 or np.ptp(np.abs(v)) == 0 or np.any(v == 0):
         raise DatasetError(f"speeds {v.tolist()}: expected three or more, not 0, of different magnitude, each a torque")
@@ -162,12 +127,16 @@ def residual_error(
     """Torque, N·m, that friction of the other transmissions adds at the motor under test, turning at `speed`, rad/s.
 
     "exact" runs the recursion with nothing to hold and takes away the own friction; "first_order" sums what the other
-    loops lose on links behind the joint and is no upper bound; "printed" has the motor radius of the other transmission,
-    as the paper does, which is right only where it equals that of the way through the joint. Source: S1 eq. 15."""
+    loops lose on links behind the joint and is no upper bound; "printed" has the motor radius of the other
+    transmission, as the paper does, which is right only where it equals that of the way through the joint.
+    Source: S1 eq. 15."""
     plan = plan_identification(transmission, joint, strategy=strategy, speeds=(speed, -speed))
     nothing, moving = np.zeros(transmission.num_joints), plan.joint_velocity[0]
     if form == "exact":
-        both = [of.statics.inverse(nothing, moving, model=model).torque for of in (transmission, _alone(transmission, joint))]
+        both = [
+            of.statics.inverse(nothing, moving, model=model).torque
+            for of in (transmission, _alone(transmission, joint))
+        ]
         return float(np.abs(both[0][joint - 1]) - np.abs(both[1][joint - 1]))
     if form not in ("first_order", "printed"):
         raise ParameterError(f"form = {form!r}: expected exact, first_order or printed")
@@ -215,9 +184,9 @@ def decompose(
 ) -> Decomposition:
     """Split C_m0, N·m, and ν, N·m·s/rad, over the branches by their shares of the dissipated power.
 
-    `branch_per_motor` k, m: velocity of each branch per motor velocity (S1 eq. 16; the motor radius in both strategies).
-    The shares come from the design, e.g. from the number of bearings (`shares_by_bearings`), and add up to 1: only they
-    are a guess, the sums at the motor hold exactly. Raises ParameterError. Source: S1 eqs 17-21."""
+    `branch_per_motor` k, m: velocity of each branch per motor velocity (S1 eq. 16), the motor radius in both
+    strategies. The shares come from the design, e.g. from the number of bearings (`shares_by_bearings`), and add up to
+    1: only they are a guess, the sums at the motor hold exactly. Raises ParameterError. Source: S1 eqs 17-21."""
     k = np.abs(np.asarray(branch_per_motor, dtype=float))
     if k.ndim != 1 or np.any(k == 0):
         raise ParameterError(f"branch_per_motor = {k.tolist()}: expected lengths other than 0, one a branch")

@@ -66,7 +66,7 @@ class Session:
 
 
 def sessions() -> list[Session]:
-    """Two motions at each level of gravity to fit, one of them three times, and a third motion held out at each level."""
+    """Two motions at each level of gravity to fit, one of them three times, and a third motion held out at each."""
     motions = {
         "a": ((0.25, 0.20, 0.30, 0.35), (0.0, 0.4, 0.8, 1.2)),
         "b": ((0.15, 0.35, 0.22, 0.28), (1.0, 0.0, 2.0, 0.5)),
@@ -135,6 +135,7 @@ def write_dataset(folder: str | Path, *, seed: int = 0) -> Path:
     for name, value in nominal_device().parameters().items():
         uncertain = value > 0 and name.startswith(("constant_loss", "viscous_loss"))
         lines.append(f"{name} = {{ value = {value!r}, sd = {0.3 * value if uncertain else 0.0!r} }}")
+    lines += [f"{name} = {{ value = 0.0, sd = 0.0 }}" for name in ("cable_coulomb", "cable_viscous")]
     lines.append("[signals]")
     for name, unit in (("motor_velocity", "rad/s"), ("external_torque", "N*m"), ("motor_torque", "N*m")):
         lines += [f'{name}_{i} = {{ column = "{name}_{i}", unit = "{unit}" }}' for i in range(1, 5)]
