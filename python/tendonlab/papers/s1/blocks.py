@@ -103,34 +103,34 @@ def statics_diagram(
     speed = transmission.kinematics.branches(velocity)
     blocks = []
     for j in reversed(range(n)):
-        x, y = 2.9 * (n - 1 - j), -2.0 * j
+        x, y = 3.9 * (n - 1 - j), -2.0 * j
         blocks.append(Block(name=f"C_{j + 1}", label=rf"$C_{j + 1}^E$", shape="input", x=x, y=y + 1.5))
         crossing = []
         for k in range(j + 1, n):
-            blocks.append(_loss(transmission, k, j + 1, float(speed[k, j + 1]), model, x=x - 0.75, y=-2.0 * k))
+            blocks.append(_loss(transmission, k, j + 1, float(speed[k, j + 1]), model, x=x - 1.5, y=-2.0 * k))
             crossing.append(
                 _gain(
                     f"give_{k + 1}_{j + 1}", rf"$-r_{j + 1}^{k + 1}$", -float(radius[k, j]),
-                    x=x + 0.75 * (k - j - 1) / max(n - 2, 1), y=-2.0 * k + 0.95, sources=(f"tau_{k + 1}_{j + 1}",),
+                    x=x - 0.65 * (k - j - 1), y=-2.0 * k + 0.95, sources=(f"tau_{k + 1}_{j + 1}",),
                 )
             )  # fmt: skip
         own = Block(
             name=f"own_{j + 1}", label=r"$\Sigma$", shape="sum", x=x, y=y,
             sources=(f"C_{j + 1}", *(gain.name for gain in crossing)),
         )  # fmt: skip
-        blocks += [*crossing, own, _driven(transmission, j, float(velocity[j]), x=x + 0.95, y=y)]
-    end = 2.9 * n - 0.4
+        blocks += [*crossing, own, _driven(transmission, j, float(velocity[j]), x=x + 1.1, y=y)]
+    end = 3.9 * n - 1.5
     for k in range(n):
         y = -2.0 * k
         blocks.append(_loss(transmission, k, 0, float(speed[k, 0]), model, x=end, y=y))
         blocks.append(
             _gain(
-                f"motor_{k + 1}", rf"$r_m^{k + 1}$", float(transmission.motor_radius[k]), x=end + 1.1, y=y,
+                f"motor_{k + 1}", rf"$r_m^{k + 1}$", float(transmission.motor_radius[k]), x=end + 1.2, y=y,
                 sources=(f"tau_{k + 1}_0",),
             )
         )  # fmt: skip
         out = Block(
-            name=f"C_m{k + 1}", label=rf"$C_m^{k + 1}$", shape="output", x=end + 2.2, y=y, sources=(f"motor_{k + 1}",)
+            name=f"C_m{k + 1}", label=rf"$C_m^{k + 1}$", shape="output", x=end + 2.3, y=y, sources=(f"motor_{k + 1}",)
         )
         blocks.append(out)
     return BlockDiagram(tuple(blocks))
@@ -169,23 +169,26 @@ def _driven(transmission: TendonTransmission, j: int, velocity: float, *, x: flo
 
 _LOSSES = ("constant", "tension", "viscous")
 
-# The blocks of fig. 6 and what does their work here: `display.ForceDisplay.command` passes through them in this order.
+# The blocks of fig. 6: `display.ForceDisplay.command` passes through them in this order.
 CONTROL_SCHEME = BlockDiagram(
     (
         Block(name="motors", label="motors and\nencoders", shape="input", x=0.0, y=0.0),
-        Block(name="direct kinematics", label="direct\nkinematics", shape="block", x=2.2, y=0.0, sources=("motors",)),
-        Block(name="arm", label="arm\n" + r"$\hat X, J$", shape="block", x=4.4, y=0.0, sources=("direct kinematics",)),
-        Block(name="proxy", label="proxy\n" + r"$X_{god}$", shape="block", x=6.6, y=0.0, sources=("arm",)),
-        Block(name="spring", label=r"$K_{st}+K_d s$", shape="block", x=8.8, y=0.9, sources=("proxy",)),
-        Block(name="surface", label="friction,\ntexture", shape="block", x=8.8, y=-0.9, sources=("proxy",)),
-        Block(name="force", label=r"$\Sigma$", shape="sum", x=10.6, y=0.0, sources=("spring", "surface")),
-        Block(name="torque", label=r"$J^T$", shape="gain", x=10.6, y=-2.6, sources=("force",)),
-        Block(name="gravity", label="gravity", shape="block", x=4.4, y=-2.6, sources=("direct kinematics",)),
-        Block(name="load", label=r"$\Sigma$", shape="sum", x=8.0, y=-2.6, sources=("torque", "gravity")),
+        Block(name="direct kinematics", label="direct\nkinematics", shape="block", x=2.3, y=0.0, sources=("motors",)),
         Block(
-            name="feed-forward", label="feed-forward\n(fig. 4)", shape="block", x=8.0, y=-4.4,
+            name="arm", label="arm\n" + r"$\hat q,\ \hat X,\ J$", shape="block", x=4.6, y=0.0,
+            sources=("direct kinematics",),
+        ),
+        Block(name="proxy", label="proxy\n" + r"$X_{god}$", shape="block", x=6.9, y=0.0, sources=("arm",)),
+        Block(name="spring", label=r"$K_{st} + K_d\,s$", shape="block", x=9.0, y=0.8, sources=("proxy",)),
+        Block(name="surface", label="friction,\ntexture", shape="block", x=9.0, y=-0.8, sources=("proxy",)),
+        Block(name="force", label=r"$\Sigma$", shape="sum", x=10.8, y=0.0, sources=("spring", "surface")),
+        Block(name="torque", label=r"$J^T$", shape="gain", x=12.0, y=-3.0, sources=("force",)),
+        Block(name="gravity", label="gravity", shape="block", x=4.6, y=-1.6, sources=("arm",)),
+        Block(name="load", label=r"$\Sigma$", shape="sum", x=6.9, y=-3.0, sources=("torque", "gravity")),
+        Block(
+            name="feed-forward", label="feed-forward\n(fig. 4)", shape="block", x=2.3, y=-3.0,
             sources=("load", "direct kinematics"),
         ),
-        Block(name="command", label="motor\ntorques", shape="output", x=0.0, y=-4.4, sources=("feed-forward",)),
+        Block(name="command", label="motor\ntorques", shape="output", x=0.0, y=-3.0, sources=("feed-forward",)),
     )
 )  # fmt: skip

@@ -32,6 +32,20 @@ def example_device(*, reducers: bool = True) -> TendonTransmission:
     )
 
 
+def first_joints(device: TendonTransmission, num_joints: int) -> TendonTransmission:
+    """The first `num_joints` transmissions alone, as the paper's figures of three joints show them."""
+    n = num_joints
+    kept = {name: getattr(device.losses, name)[:n, :n] for name in ("constant", "tension", "viscous")}
+    return replace(
+        device,
+        radius=device.radius[:n, :n],
+        motor_radius=device.motor_radius[:n],
+        losses=BranchLosses(**kept),
+        reducers=device.reducers[:n],
+        motor_reducers=device.motor_reducers[:n],
+    )
+
+
 def without_tension_loss(device: TendonTransmission) -> TendonTransmission:
     """The same device as whoever identifies (12) knows it: no loss in proportion to tension."""
     return replace(device, losses=device.losses.scaled(tension=0.0))

@@ -15,6 +15,7 @@ from tendonlab.procedures import steady_averages
 from tendonlab.routing import BranchLosses, Model, TendonTransmission
 
 Strategy = Literal["S1", "S2"]
+Form = Literal["exact", "first_order", "printed"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +122,7 @@ def residual_error(
     *,
     strategy: Strategy,
     speed: float,
-    form: Literal["exact", "first_order", "printed"] = "exact",
+    form: Form = "exact",
     model: Model = "eq12",
 ) -> float:
     """Torque, N·m, that friction of the other transmissions adds at the motor under test, turning at `speed`, rad/s.
