@@ -151,14 +151,26 @@ struct TendonRouting : tendon::Entries<T> {
       }
     return of;
   }
-  /// Tension before branch b; a bristle moves under the dry friction that the tension behind it gives.
+  /// Tension before branch b. A bristle moves under the dry friction of the tension that steady sliding would need, so
+  /// that in steady sliding it gives what dry friction does.
   T tension_before(std::size_t b, const T& velocity, const T& travel, const T& behind, T& bristle, double dt) const {
     const Cable& laws = branch[b];
-    if (laws.has(role::memory)) answer(laws, sliding(velocity, travel, behind), bristle, dt);
-    return transmission::beside_loss(behind, -1.0, [&](const auto& tension) {
+    const auto seen = [&](const auto& tension) {
       using S = std::decay_t<decltype(tension)>;
-      return laws.respond(sliding(lift<S>(velocity), lift<S>(travel), tension, constant<S>(0.0)), lift<S>(bristle))
-          .force;
+      return sliding(lift<S>(velocity), lift<S>(travel), tension, constant<S>(0.0));
+    };
+    if (laws.has(role::memory)) {
+      const T steady = transmission::beside_loss(behind, -1.0, [&](const auto& tension) {
+        const auto at = seen(tension);
+        auto sum = at.direction * laws.dry_level(at);
+        laws.template each<role::force>([&](const auto& law) { sum = sum + law.force(at); });
+        return sum;
+      });
+      answer(laws, sliding(velocity, travel, steady), bristle, dt);
+    }
+    return transmission::beside_loss(behind, -1.0, [&](const auto& tension) {
+      const auto at = seen(tension);
+      return laws.respond(at, lift<std::decay_t<decltype(tension)>>(bristle)).force;
     });
   }
   /// Loss of the reducer on joint j: as its efficiency says, and what `gear` adds where there is one.
