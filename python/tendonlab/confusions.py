@@ -30,6 +30,11 @@ CONFUSIONS = (
         "measuring both motor and joint; the motor's signal alone cannot tell",
     ),
     Confusion(
+        ("cable:load_dependence", "gear:efficiency", "load:scale_error"),
+        "several loads, each raised and lowered: a cable loses with the sense of its own motion, a gear with that of the "
+        "joint's power, a wrong load does not turn its sign with the motion",
+    ),
+    Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
     ),
 )

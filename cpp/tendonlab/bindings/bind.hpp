@@ -9,6 +9,7 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 void bind_laws(py::module_& module);
 void bind_systems(py::module_& module);
+void bind_routing(py::module_& module);
 void bind_identify(py::module_& module);
 
 /// The numbers of `values` as a numpy array of the given shape, without a copy.

@@ -27,5 +27,6 @@ PYBIND11_MODULE(_core, module) {
   });
   tendonlab::bindings::bind_laws(module);
   tendonlab::bindings::bind_systems(module);
+  tendonlab::bindings::bind_routing(module);
   tendonlab::bindings::bind_identify(module);
 }

@@ -1,6 +1,9 @@
 #pragma once
 #include "tendonlab/loading/offset.hpp"
+#include "tendonlab/loading/scale_error.hpp"
 
 namespace tendonlab::loading {
 using All = Laws<Offset>;
-}
+/// Where a load is known, but perhaps not exactly.
+using Known = Laws<ScaleError>;
+}  // namespace tendonlab::loading

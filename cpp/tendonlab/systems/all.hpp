@@ -1,8 +1,9 @@
 #pragma once
 #include "tendonlab/systems/friction_map.hpp"
 #include "tendonlab/systems/rigid_joint.hpp"
+#include "tendonlab/systems/tendon_routing.hpp"
 #include "tendonlab/systems/two_inertia.hpp"
 
 namespace tendonlab::systems {
-using All = Laws<RigidJoint, TwoInertia, FrictionMap>;
+using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting>;
 }

@@ -182,7 +182,7 @@ def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.nda
     weight = case.noise[kept][:, None]
     y = (difference[kept] / weight).ravel()
     basis = np.concatenate([s.friction[:, kept], s.initial[:, kept]]) / weight
-    columns = basis.reshape(len(basis), -1).T
+    columns = basis.reshape(len(basis), y.size).T
     there = np.isfinite(y)
     found = np.linalg.lstsq(columns[there], y[there], rcond=None)[0] if columns.shape[1] else np.zeros(0)
     cleaned = difference.copy()

@@ -55,7 +55,7 @@ def diagnose(
         case = replace(case, settings=settings, scatter=groups)
         fitter = _fitter(case, floor, cancel, seen)
         start = [[*states, *(0.0 for _ in groups)] for states in first.initial]
-        nominal = fitter.fit(case.system, initial=start, known=True)
+        nominal = fitter.fit(case.system, initial=start, known=True, solve=any(start))  # there may be no unknown
         null = fitter.fit(first.system, initial=start)
         renew = partial(_renewed, pool=pool)
         found = search(fitter, null, pool=pool, renew=renew, progress=progress, library=names)

@@ -1,0 +1,121 @@
+"""The routing as a system of the library: the same statics, and every effect on each branch or reducer."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tendonlab as tl
+from tendonlab.papers.s1 import example_device, first_joints, free_motion, gravity
+from tendonlab.routing import TendonTransmission
+
+MOTION = free_motion(duration=4.0, sample_time=0.01)
+NOMINAL = ("cable:coulomb", "cable:viscous")
+
+
+def log(device: TendonTransmission) -> pd.DataFrame:
+    n = device.num_joints
+    motor = device.kinematics.joint_to_motor(MOTION.joint_velocity[:, :n])
+    load = gravity(MOTION.joint_angle)[:, :n]
+    columns = {f"motor_velocity_{i + 1}": motor[:, i] for i in range(n)}
+    columns |= {f"external_torque_{i + 1}": load[:, i] for i in range(n)}
+    return pd.DataFrame(columns, index=pd.Index(MOTION.time, name="t"))
+
+
+def system(device: TendonTransmission, effects: dict[str, dict[str, float]] | None = None) -> tl.System:
+    values = {**device.parameters(), "cable_coulomb": 0.0, "cable_viscous": 0.0}
+    return tl.System(kind="tendon_routing", parameters=values, effects=NOMINAL).with_effects(effects or {})
+
+
+def motors(of: tl.System, device: TendonTransmission) -> np.ndarray:
+    return of.simulate(log(device)).outputs.to_numpy()
+
+
+def wanted(device: TendonTransmission) -> np.ndarray:
+    n = device.num_joints
+    return device.statics.inverse(gravity(MOTION.joint_angle)[:, :n], MOTION.joint_velocity[:, :n]).torque
+
+
+def test_it_gives_the_motor_torques_of_the_transmission() -> None:
+    device = example_device()
+    np.testing.assert_allclose(motors(system(device), device), wanted(device), rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("num_joints", [1, 2, 3])
+def test_with_fewer_joints_the_others_stand_for_nothing(num_joints: int) -> None:
+    device = first_joints(example_device(), num_joints)
+    found = motors(system(device), device)
+    np.testing.assert_allclose(found[:, :num_joints], wanted(device), rtol=1e-12, atol=1e-14)
+    assert not np.any(found[:, num_joints:])
+
+
+def test_an_effect_of_the_cable_acts_on_every_branch_alike() -> None:
+    device = example_device()
+    losses = device.losses
+    constant, tension = losses.constant + np.tri(4) * 0.3, losses.tension + np.tri(4) * 0.02
+    more = TendonTransmission(
+        radius=device.radius,
+        motor_radius=device.motor_radius,
+        losses=type(losses)(constant=constant, tension=tension, viscous=losses.viscous),
+        reducers=device.reducers,
+    )
+    added = {"cable:coulomb": {"coulomb": 0.3}, "cable:load_dependence": {"load_dependence": 0.02}}
+    np.testing.assert_allclose(motors(system(device, added), device), wanted(more), rtol=1e-12, atol=1e-14)
+
+
+def test_an_effect_of_the_gear_acts_where_there_is_one() -> None:
+    """Reducers of 90 % that lose a tenth of the output more are reducers of 1/(1/0.9 + 0.1); joint 3 has none."""
+    from tendonlab.routing import Reducer
+
+    device, efficiency = example_device(), 1 / (1 / 0.9 + 0.1)
+    worse = [None if r is None else Reducer(efficiency=efficiency, ratio=r.ratio) for r in device.reducers]
+    other = TendonTransmission(
+        radius=device.radius, motor_radius=device.motor_radius, losses=device.losses, reducers=worse
+    )
+    added = system(device, {"gear:efficiency": {"efficiency_loss": 0.1, "back_driven_loss": 1.0}})
+    np.testing.assert_allclose(motors(added, device), wanted(other), rtol=1e-12, atol=1e-14)
+
+
+def test_a_load_that_is_wrong_by_a_factor() -> None:
+    device = example_device()
+    heavier = device.statics.inverse(1.1 * gravity(MOTION.joint_angle), MOTION.joint_velocity).torque
+    found = motors(system(device, {"load:scale_error": {"scale_error": 0.1}}), device)
+    np.testing.assert_allclose(found, heavier, rtol=1e-12, atol=1e-14)
+
+
+def test_a_stiff_bristle_is_dry_friction_and_a_soft_one_comes_late() -> None:
+    device = first_joints(example_device(reducers=False), 1)
+    steady = wanted(device)[:, 0]
+    moved = log(device)
+    away = np.abs(moved["motor_velocity_1"].to_numpy()) > 1.0
+    away[:5] = False  # the bristle starts unbent
+    stiff, soft = (
+        motors(system(device, {"cable:presliding": {"bristle_stiffness": k, "bristle_damping": 0.0}}), device)[:, 0]
+        for k in (1e6, 1e2)
+    )
+    np.testing.assert_allclose(stiff[away], steady[away], rtol=1e-6)
+    assert np.max(np.abs(soft - steady)) > 0.01
+
+
+def test_a_driven_pulley_without_radius_is_refused() -> None:
+    of = system(example_device()).with_parameters({"radius_2_2": 0.0})
+    with pytest.raises(tl.ParameterError, match="radius_2_2 = 0: expected a driven pulley"):
+        of.simulate(log(example_device()))
+
+
+def test_a_loss_that_outgrows_its_tension_is_refused() -> None:
+    of = system(example_device(), {"cable:load_dependence": {"load_dependence": 1.0}})
+    with pytest.raises(tl.NumericalError, match="none balances"):
+        of.simulate(log(example_device()))
+
+
+def test_its_ports_show_what_each_branch_sees() -> None:
+    device = example_device()
+    shown = system(device).simulate(log(device), ports=True).ports
+    assert shown is not None
+    found = device.statics.inverse(gravity(MOTION.joint_angle), MOTION.joint_velocity)
+    for i in range(4):
+        for j in range(i + 1):
+            seen = shown[f"cable_{i + 1}_{j}"]
+            np.testing.assert_allclose(seen["load"], found.tension[:, i, j], rtol=1e-12)
+            np.testing.assert_allclose(seen["force"], found.loss[:, i, j], rtol=1e-9, atol=1e-12)
+            np.testing.assert_allclose(seen["velocity"], found.branch_velocity[:, i, j], rtol=1e-12, atol=1e-15)
