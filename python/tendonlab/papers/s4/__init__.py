@@ -1,0 +1,74 @@
+"""S4: a joint that cables couple to its neighbour, with friction at every contact of cable and pulley.
+
+Constants and tables, closed forms, the line contact, the twin, the rig's experiments and their identification, in the
+paper's notation; the simulator is the library's system "ccsrm"."""
+
+from tendonlab.papers.s4.constants import (
+    ENCODER_BITS,
+    ERROR_ON_THE_RIG,
+    RESOLUTION,
+    Contact,
+    Identified,
+    Joint,
+    Mechanism,
+    contact,
+    design,
+    identified,
+    joint,
+)
+from tendonlab.papers.s4.drive import Drive, printed_drive
+from tendonlab.papers.s4.play import capstan_play, saturation
+from tendonlab.papers.s4.rig import Case, case, cases, measured, run_rig
+from tendonlab.papers.s4.statics import (
+    Tensions,
+    WrapAngles,
+    backlash,
+    cable_stiffness,
+    capstan_ratio,
+    equilibrium_error,
+    frictionless_stiffness,
+    joint_torque,
+    series_stiffness,
+    static_tensions,
+    stiffness,
+    stretch,
+    wrap_angles,
+)
+from tendonlab.papers.s4.twin import CcsrmModel
+
+__all__ = [
+    "ENCODER_BITS",
+    "ERROR_ON_THE_RIG",
+    "RESOLUTION",
+    "Case",
+    "CcsrmModel",
+    "Contact",
+    "Drive",
+    "Identified",
+    "Joint",
+    "Mechanism",
+    "Tensions",
+    "WrapAngles",
+    "backlash",
+    "cable_stiffness",
+    "capstan_play",
+    "capstan_ratio",
+    "case",
+    "cases",
+    "contact",
+    "design",
+    "equilibrium_error",
+    "frictionless_stiffness",
+    "identified",
+    "joint",
+    "joint_torque",
+    "measured",
+    "printed_drive",
+    "run_rig",
+    "saturation",
+    "series_stiffness",
+    "static_tensions",
+    "stiffness",
+    "stretch",
+    "wrap_angles",
+]
