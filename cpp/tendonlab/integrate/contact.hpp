@@ -98,7 +98,7 @@ class Contact {
     const auto& geometry = this->geometry(y, frame, in);
     std::array<double, directions> effort{};
     double matrix[directions][directions + 1];
-    int index[directions], count = 0;
+    int index[directions] = {}, count = 0;
     for (int m = 0; m < directions; ++m)
       if (directed[m] && frame.mode[m] == 0.0) index[count++] = m;
     for (int a = 0; a < count; ++a) {
@@ -125,11 +125,20 @@ class Contact {
     auto pushed = frame.mode;
     pushed[m] = direction;
     const auto c = system.couple(y.at, pushed, in);
+    const auto& geometry = geometry_of(system, c);
+    const auto reach = [&](int port) {
+      double square_sum = 0;
+      for (std::size_t j = 0; j < n; ++j) square_sum += square(plain(geometry.lever[port][j]));
+      return std::sqrt(square_sum);
+    };
     double sum = 0;
     unroll<slots<System>>([&](auto i) {
       if constexpr (System::ports[i].direction >= 0)
-        if (System::ports[i].direction == m)
-          sum += plain(std::get<static_cast<std::size_t>(i)>(system.slot).stick_level(c.port[i]));
+        if (System::ports[i].direction == m) {
+          const double level = plain(std::get<static_cast<std::size_t>(i)>(system.slot).stick_level(c.port[i]));
+          // in the units of the port that stands for the mode: ports of one mode may sit on different radii
+          sum += i == representative[m] || level == 0 ? level : level * reach(i) / reach(representative[m]);
+        }
     });
     return sum;
   }

@@ -1,5 +1,8 @@
 #pragma once
 // The one place where a system template becomes a Model: its description and its simulations in every scalar.
+#include <algorithm>
+#include <optional>
+
 #include "tendonlab/integrate/recorder.hpp"
 #include "tendonlab/integrate/sampling.hpp"
 #include "tendonlab/systems/assemble.hpp"
@@ -14,6 +17,12 @@ template <class System>
 std::string axis_of(const std::string& element) {
   for (const auto& port : System::ports)
     if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
+  return {};
+}
+/// Where a parameter of that name stands, if it is there.
+inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const std::string& name) {
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].name == name) return i;
   return {};
 }
 }  // namespace systems
@@ -37,9 +46,10 @@ SystemInfo describe() {
     info.elements.push_back({element, systems::axis_of<System>(element)});
   });
   systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
-    info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
-                               std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
-                               std::string(p.meaning)});
+    const auto name = systems::parameter_name<System>(element, law, p.name);
+    if (!systems::place_of(info.parameters, name))
+      info.parameters.push_back({name, element, std::string(law), std::string(p.name), p.dimension, p.purpose,
+                                 p.typical, p.lower, p.upper, std::string(p.meaning)});
   });
   systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;
@@ -54,20 +64,39 @@ SystemInfo describe() {
                       Law::roles,
                       systems::is_structural<System>(name)};
     for_each_parameter<Law>([&](const auto& p) {
-      effect.parameters.push_back(systems::parameter_name<System>(element, Law::name, p.name));
+      const auto of = systems::parameter_name<System>(element, Law::name, p.name);
+      if (info.parameters[*systems::place_of(info.parameters, of)].effect == Law::name) effect.parameters.push_back(of);
     });
     info.effects.push_back(effect);
   });
   return info;
 }
 
+/// Which public parameter each parameter of each law is, in the order of the walk: one that several laws of an element
+/// name is the same number in all of them, and belongs to the first.
+template <class System>
+std::vector<std::size_t> find_places() {
+  System system{};
+  std::vector<std::string> names;
+  std::vector<std::size_t> places;
+  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
+    const auto name = systems::parameter_name<System>(element, law, p.name);
+    const auto known = std::find(names.begin(), names.end(), name);
+    places.push_back(static_cast<std::size_t>(known - names.begin()));
+    if (known == names.end()) names.push_back(name);
+  });
+  return places;
+}
+
 /// The system with numbers in it; `columns` are seeded into the derivatives of `T`.
 template <class System, class T>
 System assemble(const Configuration& with, const std::vector<integrate::Seed>& seeds, std::size_t first,
                 std::size_t count) {
+  static const auto places = find_places<System>();
   System system{};
-  std::size_t index = 0;
+  auto place = places.begin();
   systems::for_each_parameter_of(system, [&](const std::string&, std::string_view, const auto&, auto& field) {
+    const std::size_t index = *place++;
     T value(with.values[index]);
     if constexpr (!std::is_same_v<T, double>)
       for (std::size_t k = 0; k < count; ++k)
@@ -75,7 +104,6 @@ System assemble(const Configuration& with, const std::vector<integrate::Seed>& s
             static_cast<std::size_t>(seeds[first + k].index) == index)
           value.seed(static_cast<int>(k), 1.0);
     field = value;
-    ++index;
   });
   std::size_t effect = 0;
   systems::for_each_law(system, [&](const std::string&, auto&, unsigned& active, unsigned bit) {
@@ -131,21 +159,21 @@ class ModelOf final : public Model {
   /// What was made for another system, or asks for what this one has not, must not reach the stepper.
   void require_matching(const integrate::Experiment& experiment, const Seeds& seeds) const {
     using System = Of<double>;
+    constexpr auto stated = static_cast<std::size_t>(systems::stated<System>);
     const auto index = [](std::string_view of, std::size_t value, std::size_t count) {
       if (value >= count)
         throw ParameterError(sentence(of, " ", static_cast<long>(value), ": ", System::name, " has ", count));
     };
-    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != System::dof)
+    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != stated)
       throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ",
                                     experiment.position.size(), " positions: ", System::name, " expects ",
-                                    System::inputs.size(), " and ", System::dof));
-    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
+                                    System::inputs.size(), " and ", stated));
+    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), stated);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
             static_cast<std::size_t>(seed.index),
-            seed.of == integrate::Seed::Of::parameter ? description.parameters.size()
-                                                      : static_cast<std::size_t>(System::dof));
+            seed.of == integrate::Seed::Of::parameter ? description.parameters.size() : stated);
   }
   template <class T>
   static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
@@ -170,7 +198,7 @@ class ModelOf final : public Model {
     integrate::Simulation<System, T> simulation(
         system, experiment, settings,
         integrate::Drive<T>(experiment, system.actuation.delay(), sensor.delay(), sensor.bias()));
-    for (std::size_t j = 0; j < static_cast<std::size_t>(System::dof); ++j) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(systems::stated<System>); ++j) {
       simulation.y.at.position[j] = T(experiment.position[j]);
       simulation.y.at.velocity[j] = T(experiment.velocity[j]);
     }
@@ -185,5 +213,31 @@ class ModelOf final : public Model {
   }
 
   const SystemInfo description = describe<Of>();
+};
+
+/// A system that an effect turns into another one, with more degrees of freedom: `Grown`, of the same tables, takes its
+/// place while `Grown::instead_when` is on, so that whoever does without pays nothing for it.
+template <template <class> class Of, template <class> class Grown>
+class ModelOrGrown final : public Model {
+ public:
+  const SystemInfo& info() const override { return usual.info(); }
+  RigidMotion rigid_motion(const Configuration& with) const override { return usual.rigid_motion(with); }
+  integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
+                                 const std::vector<integrate::Seed>& seeds,
+                                 const integrate::Settings& settings) const override {
+    return with.active[switching] ? grown.simulate(with, experiment, seeds, settings)
+                                  : usual.simulate(with, experiment, seeds, settings);
+  }
+
+ private:
+  std::size_t find() const {
+    const auto& effects = usual.info().effects;
+    std::size_t i = 0;
+    while (effects.at(i).name != Grown<double>::instead_when) ++i;
+    return i;
+  }
+  const ModelOf<Of> usual;
+  const ModelOf<Grown> grown;
+  const std::size_t switching = find();
 };
 }  // namespace tendonlab
