@@ -82,9 +82,15 @@ struct CcsrmTables {
   }
 };
 
+template <class T>
+struct CcsrmElastic;
+
 /// The mechanism as the paper has it: the end sections do not stretch, so the joints' motion is the slip.
 template <class T>
 struct Ccsrm : CcsrmTables<T> {
+  static constexpr std::string_view grown_by = "ends:compliance";
+  template <class S>
+  using Grown = CcsrmElastic<S>;
   using Base = CcsrmTables<T>;
   using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
   static constexpr int dof = 1, directions = 2;
@@ -151,7 +157,6 @@ template <class T>
 struct CcsrmElastic : CcsrmTables<T> {
   using Base = CcsrmTables<T>;
   using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
-  static constexpr std::string_view instead_when = "ends:compliance";
   static constexpr double mass = 1e-4;  ///< kg: 2 cm of a steel strand of 1 mm²
   static constexpr int dof = 5, stated = 1, directions = 5;
   static constexpr std::array<Port, 10> ports{{{"joint", 0},

@@ -61,11 +61,16 @@ SystemInfo describe() {
                       std::string(Law::source),
                       std::string(Law::summary),
                       {},
+                      {},
                       Law::roles,
                       systems::is_structural<System>(name)};
     for_each_parameter<Law>([&](const auto& p) {
       const auto of = systems::parameter_name<System>(element, Law::name, p.name);
-      if (info.parameters[*systems::place_of(info.parameters, of)].effect == Law::name) effect.parameters.push_back(of);
+      const auto& owner = info.parameters[*systems::place_of(info.parameters, of)];
+      if (owner.effect == Law::name)
+        effect.parameters.push_back(of);
+      else
+        effect.needs.push_back(owner.element + ":" + owner.effect);
     });
     info.effects.push_back(effect);
   });
@@ -215,8 +220,8 @@ class ModelOf final : public Model {
   const SystemInfo description = describe<Of>();
 };
 
-/// A system that an effect turns into another one, with more degrees of freedom: `Grown`, of the same tables, takes its
-/// place while `Grown::instead_when` is on, so that whoever does without pays nothing for it.
+/// A system that an effect turns into another one, with more degrees of freedom: its `Grown`, of the same tables, takes
+/// its place while the effect `grown_by` is on, so that whoever does without pays nothing for it.
 template <template <class> class Of, template <class> class Grown>
 class ModelOrGrown final : public Model {
  public:
@@ -233,11 +238,22 @@ class ModelOrGrown final : public Model {
   std::size_t find() const {
     const auto& effects = usual.info().effects;
     std::size_t i = 0;
-    while (effects.at(i).name != Grown<double>::instead_when) ++i;
+    while (effects.at(i).name != Of<double>::grown_by) ++i;
     return i;
   }
   const ModelOf<Of> usual;
   const ModelOf<Grown> grown;
   const std::size_t switching = find();
 };
+
+template <template <class> class Of, class = void>
+struct ModelForOf {
+  using type = ModelOf<Of>;
+};
+template <template <class> class Of>
+struct ModelForOf<Of, std::void_t<decltype(Of<double>::grown_by)>> {
+  using type = ModelOrGrown<Of, Of<double>::template Grown>;
+};
+template <template <class> class Of>
+using ModelFor = typename ModelForOf<Of>::type;
 }  // namespace tendonlab
