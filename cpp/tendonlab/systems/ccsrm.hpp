@@ -36,7 +36,7 @@ struct CcsrmTables {
 
   using Contact =
       Slot<T, typename Joined<transmission::Contacts, Laws<friction::Presliding, friction::Viscous, friction::Coulomb,
-                                                           friction::LoadDependence, friction::Asymmetry>>::type>;
+                                                           friction::LoadDependence>>::type>;
   using Middle = Slot<T, Laws<transmission::Compliance>>;
   using Ends = Slot<T, Laws<transmission::EndCompliance>>;
   std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, Middle, Ends, Ends, Ends, Ends> slot;

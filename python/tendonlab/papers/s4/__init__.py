@@ -17,6 +17,14 @@ from tendonlab.papers.s4.constants import (
     joint,
 )
 from tendonlab.papers.s4.drive import Drive, printed_drive
+from tendonlab.papers.s4.identification import (
+    friction_coefficient,
+    identify_friction,
+    identify_friction_and_viscosity,
+    identify_stiffness,
+    pointwise_stiffness,
+)
+from tendonlab.papers.s4.metrics import dwell, error_levels, loop_width, nrmse, spread, synchronous_error
 from tendonlab.papers.s4.play import capstan_play, saturation
 from tendonlab.papers.s4.rig import Case, case, cases, measured, run_rig
 from tendonlab.papers.s4.statics import (
@@ -57,18 +65,29 @@ __all__ = [
     "cases",
     "contact",
     "design",
+    "dwell",
     "equilibrium_error",
+    "error_levels",
+    "friction_coefficient",
     "frictionless_stiffness",
     "identified",
+    "identify_friction",
+    "identify_friction_and_viscosity",
+    "identify_stiffness",
     "joint",
     "joint_torque",
+    "loop_width",
     "measured",
+    "nrmse",
+    "pointwise_stiffness",
     "printed_drive",
     "run_rig",
     "saturation",
     "series_stiffness",
+    "spread",
     "static_tensions",
     "stiffness",
     "stretch",
+    "synchronous_error",
     "wrap_angles",
 ]
