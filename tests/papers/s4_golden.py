@@ -25,9 +25,7 @@ def check(name: str) -> SimpleNamespace:
     """Input, expected values and tolerances of one check."""
     one = _all()[name]
     given = one["input"]
-    return SimpleNamespace(
-        given=SimpleNamespace(**given), expected=one["expected"], rtol=one["rtol"], atol=one["atol"]
-    )
+    return SimpleNamespace(given=SimpleNamespace(**given), expected=one["expected"], rtol=one["rtol"], atol=one["atol"])
 
 
 def agree(found: dict[str, Any], name: str) -> None:

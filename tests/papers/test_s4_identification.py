@@ -4,8 +4,8 @@ sheet."""
 import numpy as np
 import pandas as pd
 import pytest
-
 from s4_golden import agree, check
+
 from tendonlab.errors import ParameterError
 from tendonlab.papers import s4
 from tendonlab.papers.tables import table

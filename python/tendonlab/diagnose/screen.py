@@ -46,8 +46,8 @@ def candidates(case: Case, best: Fitted) -> list[str]:
 
 
 def _has_ground(effect: Effect, best: Fitted) -> bool:
-    """What refines dry friction (a bristle, the Stribeck excess) needs dry friction of its element to refine; what shares
-    parameters with another effect needs that one."""
+    """What refines dry friction (a bristle, the Stribeck excess) needs dry friction of its element to refine; what
+    shares parameters with another effect needs that one."""
     if not set(effect.needs) <= set(best.system.effects):
         return False
     if not effect.roles & REFINES:

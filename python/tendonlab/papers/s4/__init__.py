@@ -3,6 +3,7 @@
 Constants and tables, closed forms, the line contact, the twin, the rig's experiments and their identification, in the
 paper's notation; the simulator is the library's system "ccsrm"."""
 
+from tendonlab.papers.s4.compare import compare, differences
 from tendonlab.papers.s4.constants import (
     ENCODER_BITS,
     ERROR_ON_THE_RIG,
@@ -16,7 +17,10 @@ from tendonlab.papers.s4.constants import (
     identified,
     joint,
 )
+from tendonlab.papers.s4.contact import LineContactLuGre
+from tendonlab.papers.s4.dataset import Nominal, nominal, softer, write_rig
 from tendonlab.papers.s4.drive import Drive, printed_drive
+from tendonlab.papers.s4.dynamic import identify_dynamic
 from tendonlab.papers.s4.identification import (
     friction_coefficient,
     identify_friction,
@@ -27,6 +31,7 @@ from tendonlab.papers.s4.identification import (
 from tendonlab.papers.s4.metrics import dwell, error_levels, loop_width, nrmse, spread, synchronous_error
 from tendonlab.papers.s4.play import capstan_play, saturation
 from tendonlab.papers.s4.rig import Case, case, cases, measured, run_rig
+from tendonlab.papers.s4.simulator import simulate, simulator
 from tendonlab.papers.s4.statics import (
     Tensions,
     WrapAngles,
@@ -42,19 +47,22 @@ from tendonlab.papers.s4.statics import (
     stretch,
     wrap_angles,
 )
-from tendonlab.papers.s4.twin import CcsrmModel
+from tendonlab.papers.s4.twin import TENSIONS, CcsrmModel
 
 __all__ = [
     "ENCODER_BITS",
     "ERROR_ON_THE_RIG",
     "RESOLUTION",
+    "TENSIONS",
     "Case",
     "CcsrmModel",
     "Contact",
     "Drive",
     "Identified",
     "Joint",
+    "LineContactLuGre",
     "Mechanism",
+    "Nominal",
     "Tensions",
     "WrapAngles",
     "backlash",
@@ -63,14 +71,17 @@ __all__ = [
     "capstan_ratio",
     "case",
     "cases",
+    "compare",
     "contact",
     "design",
+    "differences",
     "dwell",
     "equilibrium_error",
     "error_levels",
     "friction_coefficient",
     "frictionless_stiffness",
     "identified",
+    "identify_dynamic",
     "identify_friction",
     "identify_friction_and_viscosity",
     "identify_stiffness",
@@ -78,16 +89,21 @@ __all__ = [
     "joint_torque",
     "loop_width",
     "measured",
+    "nominal",
     "nrmse",
     "pointwise_stiffness",
     "printed_drive",
     "run_rig",
     "saturation",
     "series_stiffness",
+    "simulate",
+    "simulator",
+    "softer",
     "spread",
     "static_tensions",
     "stiffness",
     "stretch",
     "synchronous_error",
     "wrap_angles",
+    "write_rig",
 ]

@@ -36,11 +36,15 @@ class LineContactLuGre:
 
     def level(self, v: Array, T_in: Array, wrap: Array) -> Array:
         """f_c, N (S4 eq. 28): larger for v < 0, where the cable drags itself tighter; eps at rest."""
-        return np.where(np.asarray(v) < 0, *(law[0].level(velocity=v, load=T_in, wrap_angle=wrap) for law in self._both))
+        return np.where(
+            np.asarray(v) < 0, *(law[0].level(velocity=v, load=T_in, wrap_angle=wrap) for law in self._both)
+        )
 
     def g(self, v: Array, T_in: Array, wrap: Array) -> Array:
         """Level with the Stribeck excess, N (S4 eqs 27, 29)."""
-        return self.level(v, T_in, wrap) * np.where(np.asarray(v) < 0, *(law[1].factor(velocity=v) for law in self._both))
+        return self.level(v, T_in, wrap) * np.where(
+            np.asarray(v) < 0, *(law[1].factor(velocity=v) for law in self._both)
+        )
 
     def rate(self, z: Array, v: Array, T_in: Array, wrap: Array) -> Array:
         """z', m/s (S4 eq. 27)."""

@@ -10,7 +10,8 @@ import pandas as pd
 
 from tendonlab.papers.s4.constants import RESOLUTION, contact, design, identified
 from tendonlab.papers.s4.drive import Drive
-from tendonlab.papers.s4.rig import NOISE, TENSIONS, Case, measured, run_rig
+from tendonlab.papers.s4.rig import NOISE, Case, measured, run_rig
+from tendonlab.papers.s4.twin import TENSIONS
 
 SAMPLE_STEP = 5  # every fifth sample of 1 kHz: 200 Hz
 SOFT_START = 0.2  # s

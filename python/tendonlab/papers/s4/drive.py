@@ -1,9 +1,10 @@
-"""How joint 2 is driven: an angle with its own rate, since differences of a quantised angle would shake the contacts."""
+"""How joint 2 is driven: an angle with its own rate; differences of a quantised one would shake the contacts."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +21,11 @@ class Drive:
     omega: float
     soft_start: float = 0.0
 
-    def angle(self, t: np.ndarray) -> np.ndarray:
-        """theta_2, rad."""
+    def angle(self, t: Any) -> Any:
+        """theta_2, rad, at time t, s: a number or an array."""
         return self.amplitude * np.sin(self.omega * t) * self._share(t)
 
-    def rate(self, t: np.ndarray) -> np.ndarray:
+    def rate(self, t: Any) -> Any:
         """Its rate, rad/s."""
         rate = self.amplitude * self.omega * np.cos(self.omega * t) * self._share(t)
         if self.soft_start > 0:
@@ -41,12 +42,12 @@ class Drive:
         turns = np.flatnonzero(rate[:-1] * rate[1:] < 0)
         return np.array([brentq(self.rate, t[i], t[i + 1], xtol=1e-15) for i in turns])
 
-    def _share(self, t: np.ndarray) -> np.ndarray | float:
+    def _share(self, t: Any) -> Any:
         return 1.0 - np.exp(-t / self.soft_start) if self.soft_start > 0 else 1.0
 
 
 def printed_drive(*, period: float | None = None, soft_start: float = 0.0) -> Drive:
-    """The paper's input, 10 sin(0.5 pi t) in degrees (10 rad would unwind the cables), or a slower one of `period`, s."""
+    """The paper's input, 10 sin(0.5 pi t) in degrees (10 rad would unwind the cables), or one of `period`, s."""
     rows = table("S4_table2_parameters").set_index("symbol")["value"].astype(float)
     omega = float(rows["omega"]) if period is None else 2 * np.pi / period
     return Drive(amplitude=math.radians(rows["A"]), omega=omega, soft_start=soft_start)

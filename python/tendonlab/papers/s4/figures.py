@@ -29,7 +29,7 @@ def draw_mechanism(ax: Axes) -> Axes:
     for x, name in ((0.0, "joint 1 (passive)\n$\\theta_1$"), (distance, "joint 2 (driven)\n$\\theta_2 = u$")):
         ax.plot(x + radius * np.cos(t), radius * np.sin(t), color=MUTED, lw=1.2)
         ax.plot(x, 0, "o", color=INK, ms=3)
-        ax.text(x, -1.95, name, ha="center", va="top")
+        ax.text(x, -1.25, name, ha="center", va="top")
     for sign, colour, name in ((1.0, BLUE, "1"), (-1.0, ORANGE, "2")):
         start, end = _tangent(0.0, lean, sign, radius), _tangent(distance, lean, -sign, radius)
         ax.plot([start[0], end[0]], [start[1], end[1]], color=colour, lw=1.8)
@@ -43,11 +43,9 @@ def draw_mechanism(ax: Axes) -> Axes:
             section = "1" if x == 0.0 else "3"
             ax.text(tip[0] + 1.3 * along[0], tip[1] + 1.2 * along[1], f"$T_{{{name}{section}}}$",
                     color=colour, ha="center", va="center")  # fmt: skip
-        middle = (0.5 + 0.22 * sign) * (start + end)
         quarter = start + (end - start) * 0.28
         ax.text(quarter[0], quarter[1] + 0.28 * sign, f"$T_{{{name}2}}$", color=colour, ha="center", va="center")
-        del middle
-    ax.set(xlim=(-2.6, distance + 2.6), ylim=(-3.0, 2.0), aspect="equal")
+    ax.set(xlim=(-2.6, distance + 2.6), ylim=(-2.1, 1.4), aspect="equal")
     ax.axis("off")
     return ax
 
@@ -66,7 +64,9 @@ def draw_play(ax: Axes, *, mu: float, wrap: float, T_0: float = 50.0) -> Axes:
     T_out, at = T_0, np.array([35.0, 90.0])
     ax.plot(at, at * low, ":", color=MUTED, lw=1.0)
     ax.plot(at, at * high, ":", color=MUTED, lw=1.0)
-    for (begin, end), stage, colour in zip(stages, ("I", "II", "III", "IV"), (BLUE, ORANGE, GREEN, PURPLE), strict=True):
+    for (begin, end), stage, colour in zip(
+        stages, ("I", "II", "III", "IV"), (BLUE, ORANGE, GREEN, PURPLE), strict=True
+    ):
         T_in = np.linspace(begin, end, 200)
         out = capstan_play(T_in, T_0=T_out, mu=mu, wrap=wrap)
         ax.plot(T_in, out, color=colour, lw=1.8, label=f"stage {stage}")
@@ -75,7 +75,7 @@ def draw_play(ax: Axes, *, mu: float, wrap: float, T_0: float = 50.0) -> Axes:
         ax.plot(x, y, "o", color=INK, ms=4)
         ax.annotate(name, (x, y), textcoords="offset points", xytext=(5, 6))
     ax.set(xlabel="$T_{in}$ (N)", ylabel="$T_{out}$ (N)", xlim=(35, 90), ylim=(30, 75))
-    ax.legend(loc="upper left")
+    ax.legend(loc="lower right")
     return ax
 
 

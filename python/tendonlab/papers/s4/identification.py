@@ -1,4 +1,4 @@
-"""Stiffness and friction coefficients from measured tensions, as on the rig of S4 section V, with what distorts them."""
+"""Stiffness and friction coefficients from measured tensions, as on the rig of S4 section V; what distorts them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,7 @@ class StiffnessFit:
     reach: tuple[float, float]
 
 
-def identify_stiffness(
-    T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: float | None = None
-) -> StiffnessFit:
+def identify_stiffness(T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: float | None = None) -> StiffnessFit:
     """Stiffness of a middle section from its tension T22, N, against the synchronous error `dtheta`, rad (S4 eq. 37).
 
     With `T_p` given k is the closed form sum (T22 - T_p) r dtheta / sum (r dtheta)²; without, both are fitted, since
@@ -42,10 +40,8 @@ def identify_stiffness(
     return StiffnessFit(k=float(k), T_p=float(T_p), residual=left, rms=float(np.sqrt(np.mean(left**2))), reach=reach)
 
 
-def pointwise_stiffness(
-    T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: float, share: float = 0.2
-) -> np.ndarray:
-    """k sample by sample, N/m (S4 eq. 36); NaN where |dtheta| is below `share` of its largest: it would divide noise."""
+def pointwise_stiffness(T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: float, share: float = 0.2) -> np.ndarray:
+    """k sample by sample, N/m (S4 eq. 36); NaN where |dtheta| is below `share` of its largest: noise divided."""
     dtheta = np.asarray(dtheta, dtype=float)
     large = np.abs(dtheta) > share * np.max(np.abs(dtheta))
     k = np.full(dtheta.shape, np.nan)
@@ -84,7 +80,7 @@ def identify_friction(
     share: float = 0.4,
     around: float = 0.25,
 ) -> FrictionFit:
-    """Friction coefficients from the tensions at contact 21 (S4 eq. 38), wrap angle theta_w0 - theta_1 sample by sample.
+    """Friction coefficients from the tensions at contact 21 (S4 eq. 38), the wrap angle theta_w0 - theta_1 with them.
 
     `sigma_2`, N·s/m, takes the viscous share sigma_2 r om1 out of T22 - T21 first: the ratio contains it, so its mean
     and sigma_2 must not be used together. Left out: |om1| below `share` of its largest and what is within `around`, s,
@@ -95,9 +91,7 @@ def identify_friction(
     forwards, backwards = kept & (om1 > 0), kept & (om1 < 0)
     if not (forwards.any() and backwards.any()):
         raise ParameterError("om1: expected motion in both directions away from reversals")
-    return FrictionFit(
-        mu_plus=float(mu[forwards].mean()), mu_minus=float(mu[backwards].mean()), mu=mu, kept=kept
-    )
+    return FrictionFit(mu_plus=float(mu[forwards].mean()), mu_minus=float(mu[backwards].mean()), mu=mu, kept=kept)
 
 
 def identify_friction_and_viscosity(

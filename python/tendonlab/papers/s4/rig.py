@@ -13,9 +13,8 @@ from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s4.constants import RESOLUTION, Joint, Mechanism, contact, design, identified, joint
 from tendonlab.papers.s4.drive import Drive, printed_drive
-from tendonlab.papers.s4.twin import CcsrmModel
+from tendonlab.papers.s4.twin import TENSIONS, CcsrmModel
 
-TENSIONS = ("T11", "T12", "T13", "T21", "T22", "T23")
 NOISE = 0.2  # N, sd of a tension sensor [assumed]
 SAMPLE_RATE, DURATION, WINDOW = 1000.0, 12.0, 4.0  # Hz, s, s: what comes before the window is start-up
 

@@ -8,10 +8,8 @@ import pandas as pd
 from tendonlab.catalog import system_info
 from tendonlab.papers.s4.constants import Contact, Joint, Mechanism, contact, design
 from tendonlab.papers.s4.drive import Drive
-from tendonlab.papers.s4.twin import CONTACTS
+from tendonlab.papers.s4.twin import CONTACTS, TENSIONS
 from tendonlab.system import System
-
-TENSIONS = ("T11", "T12", "T13", "T21", "T22", "T23")
 
 
 def simulator(
@@ -55,7 +53,7 @@ def simulate(of: System, drive: Drive, time: np.ndarray, *, tolerance: float = 1
 
     Columns theta2, om2, theta1, om1 (rad, rad/s), the tensions T11 … T23 and contact frictions f11 … f22 (N)."""
     log = pd.DataFrame({"driver_angle": drive.angle(time)}, index=pd.Index(time, name="t"))
-    run = of.simulate(_at_rest(log), tolerance=tolerance, ports=True)
+    run = of.simulate(log, tolerance=tolerance, ports=True)
     assert run.ports is not None  # they were asked for
     found = pd.DataFrame({"theta2": drive.angle(time), "om2": drive.rate(time)}, index=run.outputs.index)
     found["theta1"] = run["joint_angle"]
@@ -67,8 +65,3 @@ def simulate(of: System, drive: Drive, time: np.ndarray, *, tolerance: float = 1
         end = f"T{name[0]}{'1' if name[1] == '1' else '3'}"
         found[f"f{name}"] = found[middle[name[0]]] - found[end]
     return found
-
-
-def _at_rest(log: pd.DataFrame) -> pd.DataFrame:
-    """Nothing measured: the simulator starts at angle and velocity 0."""
-    return log

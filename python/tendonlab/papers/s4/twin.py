@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,7 @@ from tendonlab.papers.s4.constants import Contact, Joint, Mechanism
 from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.friction import LineContact, joint_friction
 
+TENSIONS = ("T11", "T12", "T13", "T21", "T22", "T23")
 CONTACTS = ("11", "12", "21", "22")
 FLIP = (-1.0, 1.0, 1.0, -1.0)  # direction of each contact's slip towards the middle section, per turn of its joint
 PRINTED = (1.0, 1.0, -1.0, -1.0)  # as S4 eq. (35) prints it: friction then drives joint 1
@@ -52,7 +54,7 @@ class CcsrmModel:
         rtol: float = 1e-8,
         longest_step: float = 5e-3,
     ) -> pd.DataFrame:
-        """Run from rest and give the states, theta2, om2, the six tensions and four friction forces at `time`, s, from 0.
+        """Run from rest: states, theta2, om2, the six tensions and four frictions at `time`, s, which begins at 0.
 
         The integrator starts anew at every reversal of joint 2. `longest_step`, s. Raises ParameterError for another
         method, NumericalError where the solver fails (with the printed signs it does)."""
@@ -69,7 +71,7 @@ class CcsrmModel:
 
     def rate(self, drive: Drive, t: float, x: State) -> list[float]:
         """Rate of the state (`names`) at t, s."""
-        tensions, friction, v, zdot = self.forces(float(drive.angle(t)), float(drive.rate(t)), x)
+        tensions, _, v, zdot = self.forces(float(drive.angle(t)), float(drive.rate(t)), x)
         torque = self.mechanism.r * (tensions[3] - tensions[0])
         zj, held = (0.0, 0.0) if self.joint is None else joint_friction(x[6], x[1], self.joint)
         slips = [] if self.end_stiffness is None else v
@@ -130,7 +132,7 @@ class CcsrmModel:
         frame = pd.DataFrame(states, index=pd.Index(time, name="t"), columns=list(self.names))
         frame.insert(0, "theta2", theta_2)
         frame.insert(1, "om2", om_2)
-        for k, name in enumerate(("T11", "T12", "T13", "T21", "T22", "T23")):
+        for k, name in enumerate(TENSIONS):
             frame[name] = [row[0][k] for row in rows]
         for k, name in enumerate(CONTACTS):
             frame[f"f{name}"] = [row[1][k] for row in rows]
@@ -140,5 +142,5 @@ class CcsrmModel:
 def _pieces(time: np.ndarray, reversals: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
     """Start and end of each stretch between reversals, and the instants after its start up to its end."""
     borders = [time[0], *reversals[reversals < time[-1]], time[-1]]
-    for begin, end in zip(borders[:-1], borders[1:], strict=True):
+    for begin, end in pairwise(borders):
         yield begin, end, time[(time > begin) & (time <= end)]
