@@ -109,18 +109,20 @@ def test_the_stribeck_peak_shows_in_a_slow_run() -> None:
 
 def test_figure_14b() -> None:
     """The friction model alone, fed by noisy T22 and theta_1: 1.1 % of the range with both coefficients (accepted below
-    2 %), 2.8 % with their mean, 1.6 % on the rig with elastic ends."""
+    2 %), 2.8 % with their mean. Elastic ends: 1.6 % is what 20 k makes; with 5 k joint 1 is no measure of slip."""
     found = {}
-    for name in ("E1", "E2"):
+    for name in ("E1", "E2", "E2b"):
         of = s4.case(name)
-        seen = s4.measured(s4.run_rig(of), seed=2)
-        slip = 0.012 * velocity(seen.index, seen["theta1"], method="savgol")
+        seen = s4.measured(s4.run_rig(of, duration=9.0), seed=2)
+        slip = 0.012 * velocity(seen.index, seen["theta1"], method="savgol", window=0.051)
         wrap = 1.69 - seen["theta1"].to_numpy()
         mean = replace(of.model().contact, mu_c=0.1665, mu_s=1.2 * 0.1665, mu_back=None)
         for which, line in (("both", of.model().contact), ("mean", mean)):
             f = s4.LineContactLuGre(line).follow(seen.index.to_numpy(), slip, seen["T22"].to_numpy(), wrap)
             window = seen.index > 4.0
             found[name, which] = s4.nrmse(f[window], (seen["T22"] - seen["T21"]).to_numpy()[window])
+    assert found["E1", "both"] < 0.02
     assert found["E1", "both"] == pytest.approx(0.011, abs=0.002)
-    assert found["E1", "mean"] == pytest.approx(0.028, abs=0.004)
-    assert found["E2", "both"] == pytest.approx(0.016, abs=0.006)
+    assert found["E1", "mean"] == pytest.approx(0.028, abs=0.002)
+    assert found["E2b", "both"] == pytest.approx(0.016, abs=0.003)
+    assert found["E2", "both"] > 0.04

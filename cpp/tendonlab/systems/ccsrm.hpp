@@ -37,7 +37,7 @@ struct CcsrmTables {
   using Contact =
       Slot<T, typename Joined<transmission::Contacts, Laws<friction::Presliding, friction::Viscous, friction::Coulomb,
                                                            friction::LoadDependence>>::type>;
-  using Middle = Slot<T, Laws<transmission::Compliance>>;
+  using Middle = Slot<T, Laws<friction::Viscous>>;
   using Ends = Slot<T, Laws<transmission::EndCompliance>>;
   std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, Middle, Ends, Ends, Ends, Ends> slot;
   Chain<T, Laws<>> load, actuation;
@@ -157,7 +157,7 @@ template <class T>
 struct CcsrmElastic : CcsrmTables<T> {
   using Base = CcsrmTables<T>;
   using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
-  static constexpr double mass = 1e-4;  ///< kg: 2 cm of a steel strand of 1 mm²
+  static constexpr double mass = 1e-6;  ///< kg: far below that of a strand, so that slip follows the forces at once
   static constexpr int dof = 5, stated = 1, directions = 5;
   static constexpr std::array<Port, 10> ports{{{"joint", 0},
                                                {"contact", 1, -1, Axis::linear, false, "contact_11"},

@@ -19,10 +19,12 @@ std::string axis_of(const std::string& element) {
     if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
   return {};
 }
-/// Where a parameter of that name stands, if it is there.
-inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const std::string& name) {
+/// Where the parameter stands that laws of `element` call `own`, if it is there: one that several of them name is the
+/// same number in all of them, and belongs to the first.
+inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const std::string& element,
+                                           std::string_view own) {
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].name == name) return i;
+    if (parameters[i].element == element && parameters[i].own == own) return i;
   return {};
 }
 }  // namespace systems
@@ -46,10 +48,10 @@ SystemInfo describe() {
     info.elements.push_back({element, systems::axis_of<System>(element)});
   });
   systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
-    const auto name = systems::parameter_name<System>(element, law, p.name);
-    if (!systems::place_of(info.parameters, name))
-      info.parameters.push_back({name, element, std::string(law), std::string(p.name), p.dimension, p.purpose,
-                                 p.typical, p.lower, p.upper, std::string(p.meaning)});
+    if (!systems::place_of(info.parameters, element, p.name))
+      info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
+                                 std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
+                                 std::string(p.meaning)});
   });
   systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;
@@ -65,10 +67,9 @@ SystemInfo describe() {
                       Law::roles,
                       systems::is_structural<System>(name)};
     for_each_parameter<Law>([&](const auto& p) {
-      const auto of = systems::parameter_name<System>(element, Law::name, p.name);
-      const auto& owner = info.parameters[*systems::place_of(info.parameters, of)];
+      const auto& owner = info.parameters[*systems::place_of(info.parameters, element, p.name)];
       if (owner.effect == Law::name)
-        effect.parameters.push_back(of);
+        effect.parameters.push_back(owner.name);
       else
         effect.needs.push_back(owner.element + ":" + owner.effect);
     });
@@ -77,18 +78,17 @@ SystemInfo describe() {
   return info;
 }
 
-/// Which public parameter each parameter of each law is, in the order of the walk: one that several laws of an element
-/// name is the same number in all of them, and belongs to the first.
+/// Which public parameter each parameter of each law is, in the order of the walk.
 template <class System>
 std::vector<std::size_t> find_places() {
   System system{};
-  std::vector<std::string> names;
+  std::vector<std::pair<std::string, std::string_view>> known;
   std::vector<std::size_t> places;
-  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
-    const auto name = systems::parameter_name<System>(element, law, p.name);
-    const auto known = std::find(names.begin(), names.end(), name);
-    places.push_back(static_cast<std::size_t>(known - names.begin()));
-    if (known == names.end()) names.push_back(name);
+  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view, const auto& p, auto&) {
+    const std::pair one{element, p.name};
+    const auto found = std::find(known.begin(), known.end(), one);
+    places.push_back(static_cast<std::size_t>(found - known.begin()));
+    if (found == known.end()) known.push_back(one);
   });
   return places;
 }
