@@ -40,7 +40,8 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Effect:
-    """A law in a place, "joint:stribeck". `structural` ones are part of the system and always on."""
+    """A law in a place, "joint:stribeck". `structural` ones are part of the system and always on; `needs`: effects
+    whose parameters it shares."""
 
     name: str
     element: str
@@ -49,6 +50,7 @@ class Effect:
     source: str
     summary: str
     parameters: tuple[str, ...]
+    needs: tuple[str, ...]
     structural: bool
     roles: int
 
@@ -128,7 +130,9 @@ def system_info(kind: str) -> SystemInfo:
             Parameter(**{**p, "element": p["element"] or None, "effect": p["effect"] or None})
             for p in raw["parameters"]
         ),
-        effects=tuple(Effect(**{**e, "parameters": tuple(e["parameters"])}) for e in raw["effects"]),
+        effects=tuple(
+            Effect(**{**e, "parameters": tuple(e["parameters"]), "needs": tuple(e["needs"])}) for e in raw["effects"]
+        ),
         elements=tuple(name for name, _ in raw["elements"]),
         element_axes={name: axis for name, axis in raw["elements"] if axis},
         ports=tuple(Port(name, element) for name, element in raw["ports"]),

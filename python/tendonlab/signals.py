@@ -8,6 +8,8 @@ import numpy as np
 
 from tendonlab import _core
 
+ROUNDING = 1e-9  # of its range: a signal with less noise was computed, not measured
+
 
 def hold(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """Each value held until the next sample, as hardware does."""
@@ -28,10 +30,13 @@ def smooth(time: np.ndarray, values: np.ndarray) -> _core.Signal:
 
 
 def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
-    """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation."""
+    """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation; through them where they
+    carry no noise, which leaves nothing to choose by."""
     from scipy.interpolate import PPoly, make_smoothing_spline
 
     kept = np.isfinite(values)
+    if white_noise_sd(values) <= ROUNDING * float(np.ptp(values[kept])):
+        return smooth(time[kept], values[kept])
     return _from_pieces(PPoly.from_spline(make_smoothing_spline(time[kept], values[kept])))
 
 

@@ -144,6 +144,9 @@ class System:
         if effect.roles & MEMORY and not set(levels) & set(self.effects):
             told = f"expected one of {', '.join(levels)} beside it"
             raise ParameterError(f"{name} takes over the dry friction of its slot: {told}")
+        for other in effect.needs:
+            if other not in self.effects:
+                raise ParameterError(f"{name} shares parameters with {other}: expected it beside it")
 
     def _require_within(self, name: str) -> None:
         """Raises where a parameter has no value, or one outside its bounds."""

@@ -1,11 +1,13 @@
 """What holds for every law in every place of every system: off means off, and derivatives are those of the motion."""
 
+from collections.abc import Set
+
 import numpy as np
 import pytest
 
 from examples import T, example, with_effect
 from integrate.rig import differences, relative, run
-from tendonlab.catalog import kinds, system_info
+from tendonlab.catalog import LEVEL, REFINES, kinds, system_info
 from tendonlab.system import System
 
 
@@ -13,15 +15,31 @@ def pairs() -> list[tuple[str, str]]:
     return [(kind, e.name) for kind in kinds() for e in system_info(kind).effects if not e.structural]
 
 
+def without_effects(system: System, effects: Set[str]) -> System:
+    gone = {name for effect in effects for name in system.info.effect(effect).parameters}
+    return System(
+        kind=system.kind,
+        parameters={n: v for n, v in system.parameters.items() if n not in gone},
+        effects=tuple(e for e in system.effects if e not in effects),
+    )
+
+
+def dependants(kind: str, effect: str) -> set[str]:
+    """Nominal effects that cannot do without `effect`: what shares its parameters, and what refines the dry friction of
+    which it is the only level."""
+    info = system_info(kind)
+    of = info.effect(effect)
+    nominal = [info.effect(name) for name in info.default_nominal_effects]
+    here = [e for e in nominal if e.element == of.element and e.name != effect]
+    alone = of.roles & LEVEL and not any(e.roles & LEVEL for e in here)
+    return {e.name for e in here if effect in e.needs or (alone and e.roles & REFINES)}
+
+
 @pytest.mark.parametrize(("kind", "effect"), pairs())
 def test_off_means_the_bits_of_the_system_without_it(kind: str, effect: str) -> None:
     of = example(kind)
-    off = with_effect(kind, effect, off=True)
-    without = System(
-        kind=kind,
-        parameters={n: v for n, v in off.parameters.items() if n not in off.info.effect(effect).parameters},
-        effects=tuple(e for e in off.effects if e != effect),
-    )
+    off = without_effects(with_effect(kind, effect, off=True), dependants(kind, effect))
+    without = without_effects(off, {effect})
     found = run(off, T, of.inputs, kind=of.between, tolerance=1e-6).table
     assert np.array_equal(found, run(without, T, of.inputs, kind=of.between, tolerance=1e-6).table)
 

@@ -22,7 +22,7 @@ py::dict parameter_info(const ParameterInfo& p) {
 py::dict effect_info(const EffectInfo& e) {
   return py::dict(py::arg("name") = e.name, py::arg("element") = e.element, py::arg("effect") = e.effect,
                   py::arg("equation") = e.equation, py::arg("source") = e.source, py::arg("summary") = e.summary,
-                  py::arg("parameters") = e.parameters, py::arg("roles") = e.roles,
+                  py::arg("parameters") = e.parameters, py::arg("needs") = e.needs, py::arg("roles") = e.roles,
                   py::arg("structural") = e.structural);
 }
 template <class Items, class F>

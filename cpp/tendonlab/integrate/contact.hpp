@@ -98,7 +98,7 @@ class Contact {
     const auto& geometry = this->geometry(y, frame, in);
     std::array<double, directions> effort{};
     double matrix[directions][directions + 1];
-    int index[directions], count = 0;
+    int index[directions] = {}, count = 0;
     for (int m = 0; m < directions; ++m)
       if (directed[m] && frame.mode[m] == 0.0) index[count++] = m;
     for (int a = 0; a < count; ++a) {
@@ -125,11 +125,19 @@ class Contact {
     auto pushed = frame.mode;
     pushed[m] = direction;
     const auto c = system.couple(y.at, pushed, in);
+    const auto& geometry = geometry_of(system, c);
     double sum = 0;
     unroll<slots<System>>([&](auto i) {
+      constexpr int bears = bearer_of(i);
       if constexpr (System::ports[i].direction >= 0)
-        if (System::ports[i].direction == m)
-          sum += plain(std::get<static_cast<std::size_t>(i)>(system.slot).stick_level(c.port[i]));
+        if (System::ports[i].direction == m) {
+          const double level = plain(std::get<static_cast<std::size_t>(i)>(system.slot).stick_level(c.port[i]));
+          // ports of one mode may sit on different radii: what counts is the effort at the port that stands for it
+          if constexpr (bears == i)
+            sum += level;
+          else if (level > 0)
+            sum += level * reach<i>(geometry) / reach<bears>(geometry);
+        }
     });
     return sum;
   }
@@ -220,6 +228,20 @@ class Contact {
     for (std::size_t j = 0; j < n; ++j)
       sum += plain(geometry.lever[a][j]) * plain(geometry.inverse_inertia[j]) * plain(geometry.lever[b][j]);
     return sum;
+  }
+  /// The first port of the mode of port i: the one that stands for it.
+  static constexpr int bearer_of(int i) {
+    int first = 0;
+    while (System::ports[static_cast<std::size_t>(first)].direction !=
+           System::ports[static_cast<std::size_t>(i)].direction)
+      ++first;
+    return first;
+  }
+  template <int port, class Geometry>
+  static double reach(const Geometry& geometry) {
+    double square_sum = 0;
+    for (std::size_t j = 0; j < n; ++j) square_sum += square(plain(geometry.lever[port][j]));
+    return std::sqrt(square_sum);
   }
   /// One more port at rest: keep -= (keep W g)(g' keep) / (g' keep W g). For a port on one axis the entry is exactly 0.
   template <class Geometry>

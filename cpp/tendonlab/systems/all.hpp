@@ -1,9 +1,10 @@
 #pragma once
+#include "tendonlab/systems/ccsrm.hpp"
 #include "tendonlab/systems/friction_map.hpp"
 #include "tendonlab/systems/rigid_joint.hpp"
 #include "tendonlab/systems/tendon_routing.hpp"
 #include "tendonlab/systems/two_inertia.hpp"
 
 namespace tendonlab::systems {
-using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting>;
+using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting, Ccsrm>;
 }

@@ -18,6 +18,7 @@ struct ParameterInfo {
 struct EffectInfo {
   std::string name, element, effect, equation, source, summary;
   std::vector<std::string> parameters;
+  std::vector<std::string> needs;  ///< effects whose parameters it shares
   unsigned roles;
   bool structural;
 };

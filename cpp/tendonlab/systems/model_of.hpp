@@ -1,5 +1,8 @@
 #pragma once
 // The one place where a system template becomes a Model: its description and its simulations in every scalar.
+#include <algorithm>
+#include <optional>
+
 #include "tendonlab/integrate/recorder.hpp"
 #include "tendonlab/integrate/sampling.hpp"
 #include "tendonlab/systems/assemble.hpp"
@@ -14,6 +17,14 @@ template <class System>
 std::string axis_of(const std::string& element) {
   for (const auto& port : System::ports)
     if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
+  return {};
+}
+/// Where the parameter stands that laws of `element` call `own`, if it is there: one that several of them name is the
+/// same number in all of them, and belongs to the first.
+inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const std::string& element,
+                                           std::string_view own) {
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].element == element && parameters[i].own == own) return i;
   return {};
 }
 }  // namespace systems
@@ -37,9 +48,10 @@ SystemInfo describe() {
     info.elements.push_back({element, systems::axis_of<System>(element)});
   });
   systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
-    info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
-                               std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
-                               std::string(p.meaning)});
+    if (!systems::place_of(info.parameters, element, p.name))
+      info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
+                                 std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
+                                 std::string(p.meaning)});
   });
   systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;
@@ -51,23 +63,45 @@ SystemInfo describe() {
                       std::string(Law::source),
                       std::string(Law::summary),
                       {},
+                      {},
                       Law::roles,
                       systems::is_structural<System>(name)};
     for_each_parameter<Law>([&](const auto& p) {
-      effect.parameters.push_back(systems::parameter_name<System>(element, Law::name, p.name));
+      const auto& owner = info.parameters[*systems::place_of(info.parameters, element, p.name)];
+      if (owner.effect == Law::name)
+        effect.parameters.push_back(owner.name);
+      else
+        effect.needs.push_back(owner.element + ":" + owner.effect);
     });
     info.effects.push_back(effect);
   });
   return info;
 }
 
+/// Which public parameter each parameter of each law is, in the order of the walk.
+template <class System>
+std::vector<std::size_t> find_places() {
+  System system{};
+  std::vector<std::pair<std::string, std::string_view>> known;
+  std::vector<std::size_t> places;
+  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view, const auto& p, auto&) {
+    const std::pair one{element, p.name};
+    const auto found = std::find(known.begin(), known.end(), one);
+    places.push_back(static_cast<std::size_t>(found - known.begin()));
+    if (found == known.end()) known.push_back(one);
+  });
+  return places;
+}
+
 /// The system with numbers in it; `columns` are seeded into the derivatives of `T`.
 template <class System, class T>
 System assemble(const Configuration& with, const std::vector<integrate::Seed>& seeds, std::size_t first,
                 std::size_t count) {
+  static const auto places = find_places<System>();
   System system{};
-  std::size_t index = 0;
+  auto place = places.begin();
   systems::for_each_parameter_of(system, [&](const std::string&, std::string_view, const auto&, auto& field) {
+    const std::size_t index = *place++;
     T value(with.values[index]);
     if constexpr (!std::is_same_v<T, double>)
       for (std::size_t k = 0; k < count; ++k)
@@ -75,7 +109,6 @@ System assemble(const Configuration& with, const std::vector<integrate::Seed>& s
             static_cast<std::size_t>(seeds[first + k].index) == index)
           value.seed(static_cast<int>(k), 1.0);
     field = value;
-    ++index;
   });
   std::size_t effect = 0;
   systems::for_each_law(system, [&](const std::string&, auto&, unsigned& active, unsigned bit) {
@@ -131,21 +164,21 @@ class ModelOf final : public Model {
   /// What was made for another system, or asks for what this one has not, must not reach the stepper.
   void require_matching(const integrate::Experiment& experiment, const Seeds& seeds) const {
     using System = Of<double>;
+    constexpr auto stated = static_cast<std::size_t>(systems::stated<System>);
     const auto index = [](std::string_view of, std::size_t value, std::size_t count) {
       if (value >= count)
         throw ParameterError(sentence(of, " ", static_cast<long>(value), ": ", System::name, " has ", count));
     };
-    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != System::dof)
+    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != stated)
       throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ",
                                     experiment.position.size(), " positions: ", System::name, " expects ",
-                                    System::inputs.size(), " and ", System::dof));
-    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
+                                    System::inputs.size(), " and ", stated));
+    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), stated);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
             static_cast<std::size_t>(seed.index),
-            seed.of == integrate::Seed::Of::parameter ? description.parameters.size()
-                                                      : static_cast<std::size_t>(System::dof));
+            seed.of == integrate::Seed::Of::parameter ? description.parameters.size() : stated);
   }
   template <class T>
   static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
@@ -170,7 +203,7 @@ class ModelOf final : public Model {
     integrate::Simulation<System, T> simulation(
         system, experiment, settings,
         integrate::Drive<T>(experiment, system.actuation.delay(), sensor.delay(), sensor.bias()));
-    for (std::size_t j = 0; j < static_cast<std::size_t>(System::dof); ++j) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(systems::stated<System>); ++j) {
       simulation.y.at.position[j] = T(experiment.position[j]);
       simulation.y.at.velocity[j] = T(experiment.velocity[j]);
     }
@@ -186,4 +219,41 @@ class ModelOf final : public Model {
 
   const SystemInfo description = describe<Of>();
 };
+
+/// A system that an effect turns into another one, with more degrees of freedom: its `Grown`, of the same tables, takes
+/// its place while the effect `grown_by` is on, so that whoever does without pays nothing for it.
+template <template <class> class Of, template <class> class Grown>
+class ModelOrGrown final : public Model {
+ public:
+  const SystemInfo& info() const override { return usual.info(); }
+  RigidMotion rigid_motion(const Configuration& with) const override { return usual.rigid_motion(with); }
+  integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
+                                 const std::vector<integrate::Seed>& seeds,
+                                 const integrate::Settings& settings) const override {
+    return with.active[switching] ? grown.simulate(with, experiment, seeds, settings)
+                                  : usual.simulate(with, experiment, seeds, settings);
+  }
+
+ private:
+  std::size_t find() const {
+    const auto& effects = usual.info().effects;
+    std::size_t i = 0;
+    while (effects.at(i).name != Of<double>::grown_by) ++i;
+    return i;
+  }
+  const ModelOf<Of> usual;
+  const ModelOf<Grown> grown;
+  const std::size_t switching = find();
+};
+
+template <template <class> class Of, class = void>
+struct ModelForOf {
+  using type = ModelOf<Of>;
+};
+template <template <class> class Of>
+struct ModelForOf<Of, std::void_t<decltype(Of<double>::grown_by)>> {
+  using type = ModelOrGrown<Of, Of<double>::template Grown>;
+};
+template <template <class> class Of>
+using ModelFor = typename ModelForOf<Of>::type;
 }  // namespace tendonlab

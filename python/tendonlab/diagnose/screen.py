@@ -46,7 +46,10 @@ def candidates(case: Case, best: Fitted) -> list[str]:
 
 
 def _has_ground(effect: Effect, best: Fitted) -> bool:
-    """What refines dry friction (a bristle, the Stribeck excess) needs dry friction of its element to refine."""
+    """What refines dry friction (a bristle, the Stribeck excess) needs dry friction of its element to refine; what
+    shares parameters with another effect needs that one."""
+    if not set(effect.needs) <= set(best.system.effects):
+        return False
     if not effect.roles & REFINES:
         return True
     here = [e for e in best.system.info.effects if e.name in best.system.effects and e.element == effect.element]

@@ -1,0 +1,232 @@
+#pragma once
+#include "tendonlab/systems/system.hpp"
+#include "tendonlab/transmission/end_compliance.hpp"
+
+namespace tendonlab::systems {
+/// Two joints that two S-shaped cables couple to turn by equal angles over two pulleys (S4). Joint 2 is driven:
+///   J theta_1'' = r (T_21 - T_11) - friction
+///   T_12 = T_p - k r (theta_2 - theta_1),  T_22 = T_p + k r (theta_2 - theta_1)               middle sections
+///   T_11 = T_12 - f_11,  T_13 = T_12 - f_12,  T_21 = T_22 - f_21,  T_23 = T_22 - f_22         end sections
+/// Slip v is positive towards the middle section, so f opposes it: v = r (-theta_1', theta_2', theta_1', -theta_2').
+/// What is the same whether the end sections stretch or not stands here.
+template <class T>
+struct CcsrmTables {
+  static constexpr std::string_view name = "ccsrm",
+                                    equation =
+                                        "J theta_1'' = r (T_21 - T_11) - friction; T_i2 = T_p -+ k r (theta_2 - "
+                                        "theta_1); T_i1 = T_i2 - f_i1; T_i3 = T_i2 - f_i2";
+  enum PortOf { joint, c11, c12, c21, c22, cable, e11, e12, e21, e22 };
+  static constexpr int sides = 0;
+  static constexpr bool commanded = false;
+  static constexpr std::array<Input, 1> inputs{
+      {{"driver_angle", "angle of the driven joint 2", Dimension::angle, true, Between::smooth}}};
+  static constexpr std::array<Output, 7> outputs{
+      {{"joint_angle", "angle of joint 1", Dimension::displacement, 0},
+       {"tension_11", "tension of cable 1 beyond pulley 1", Dimension::force, -1},
+       {"tension_12", "tension of cable 1 between the pulleys", Dimension::force, -1},
+       {"tension_13", "tension of cable 1 beyond pulley 2", Dimension::force, -1},
+       {"tension_21", "tension of cable 2 beyond pulley 1", Dimension::force, -1},
+       {"tension_22", "tension of cable 2 between the pulleys", Dimension::force, -1},
+       {"tension_23", "tension of cable 2 beyond pulley 2", Dimension::force, -1}}};
+  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr std::array<std::string_view, 4> nominal{"contact:capstan", "contact:presliding", "contact:stribeck",
+                                                           "contact:viscous"};
+  static constexpr bool plain_names = true;
+  static constexpr std::array<Renamed, 1> renamed{{{"contact:viscous", "viscous", "contact_viscous"}}};
+
+  using Contact =
+      Slot<T, typename Joined<transmission::Contacts, Laws<friction::Presliding, friction::Viscous, friction::Coulomb,
+                                                           friction::LoadDependence>>::type>;
+  using Middle = Slot<T, Laws<friction::Viscous>>;
+  using Ends = Slot<T, Laws<transmission::EndCompliance>>;
+  std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, Middle, Ends, Ends, Ends, Ends> slot;
+  Chain<T, Laws<>> load, actuation;
+  std::array<Chain<T, sensing::All>, 7> sensor;
+  T cable_stiffness, pretension, pulley_radius, initial_wrap_angle, inertia;
+
+  static constexpr auto parameters() {
+    using Own = CcsrmTables;
+    return std::tuple{parameter(&Own::cable_stiffness, "cable_stiffness", Dimension::line_stiffness, Purpose::structure,
+                                1e5, 1e-3, inf, "tension per stretch of a middle section"),
+                      parameter(&Own::pretension, "pretension", Dimension::force, Purpose::structure, 50.0, 0.0, inf,
+                                "tension of both cables at equal angles without friction"),
+                      parameter(&Own::pulley_radius, "pulley_radius", Dimension::length, Purpose::structure, 0.012,
+                                1e-6, inf, "radius of the pulleys"),
+                      parameter(&Own::initial_wrap_angle, "initial_wrap_angle", Dimension::angle, Purpose::structure,
+                                1.69, 1e-3, inf, "wrap angle of every contact at angle 0"),
+                      parameter(&Own::inertia, "inertia", Dimension::inertia, Purpose::structure, 0.01, 1e-12, inf,
+                                "inertia of what joint 1 carries")};
+  }
+  T effort_per_command() const { return T(1.0); }
+
+ protected:
+  static constexpr double flip[4] = {-1.0, 1.0, 1.0, -1.0};  ///< slip of each contact per turn of its joint
+
+  /// A cable does not push.
+  template <class S>
+  static S pulling(const S& tension) {
+    return select(plain(tension) > 0.0, tension, constant<S>(0.0));
+  }
+  /// Wrap angles (S4 eq. 16), and as loads the middle tensions where cable 1 is longer by stretch[0] and cable 2 by
+  /// stretch[1], m.
+  template <class S, class Coupled>
+  void load_contacts(Coupled& c, const S& theta_1, const S& theta_2, const S (&stretch)[2]) const {
+    const S more = std::get<cable>(slot).respond(c.port[cable], S{}).force;  // of positions and velocities only
+    const S tension[2] = {pulling(S(pretension + cable_stiffness * stretch[0] - more)),
+                          pulling(S(pretension + cable_stiffness * stretch[1] + more))};
+    const S turn[4] = {theta_1, theta_2, theta_1, theta_2};
+    for (std::size_t i = 0; i < 4; ++i) {
+      c.port[c11 + i].load = tension[i / 2];
+      c.port[c11 + i].wrap = initial_wrap_angle - flip[i] * turn[i];
+    }
+  }
+};
+
+template <class T>
+struct CcsrmElastic;
+
+/// The mechanism as the paper has it: the end sections do not stretch, so the joints' motion is the slip.
+template <class T>
+struct Ccsrm : CcsrmTables<T> {
+  static constexpr std::string_view grown_by = "ends:compliance";
+  template <class S>
+  using Grown = CcsrmElastic<S>;
+  using Base = CcsrmTables<T>;
+  using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
+  static constexpr int dof = 1, directions = 2;
+  static constexpr std::array<Port, 10> ports{{{"joint", 0},
+                                               {"contact", 0, -1, Axis::linear, false, "contact_11"},
+                                               {"contact", 1, -1, Axis::linear, true, "contact_12"},
+                                               {"contact", 0, -1, Axis::linear, false, "contact_21"},
+                                               {"contact", 1, -1, Axis::linear, true, "contact_22"},
+                                               {"cable", -1, -1, Axis::linear},
+                                               {"ends", -1, -1, Axis::linear, false, "end_11"},
+                                               {"ends", -1, -1, Axis::linear, false, "end_12"},
+                                               {"ends", -1, -1, Axis::linear, false, "end_21"},
+                                               {"ends", -1, -1, Axis::linear, false, "end_22"}}};
+  static constexpr bool joined[10][1] = {{true}, {true}, {false}, {true}};
+  std::array<T, 1> inverse_inertia;
+  T lever[10][1];
+
+  void prepare() {
+    inverse_inertia[0] = 1.0 / this->inertia;
+    for (auto& row : lever) row[0] = T(0.0);
+    lever[joint][0] = T(1.0);
+    lever[c11][0] = -this->pulley_radius;
+    lever[c21][0] = this->pulley_radius;
+  }
+  std::array<T, 1> rigid_shape() const { return {T(1.0)}; }
+
+  template <class S, class Modes, class Inputs>
+  Coupling<S, 10, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
+    Coupling<S, 10, 1> c;
+    const T& r = this->pulley_radius;
+    const S theta_1 = at.position[0], theta_2 = in.template input<0>(at.time);
+    const S speed[2] = {r * at.velocity[0], r * in.template slope<0>(at.time)};
+    for (std::size_t i = 0; i < 4; ++i) {
+      c.port[c11 + i].velocity = Base::flip[i] * speed[i % 2];
+      c.port[c11 + i].direction = Base::flip[i] * mode[i % 2];
+    }
+    const S longer = r * (theta_2 - theta_1), stretch[2] = {-longer, longer};
+    c.port[cable].position = longer;
+    c.port[cable].velocity = speed[1] - speed[0];
+    this->load_contacts(c, theta_1, theta_2, stretch);
+    c.applied[0] = r * (c.port[c21].load - c.port[c11].load);
+    c.port[joint].position = theta_1;
+    c.port[joint].velocity = at.velocity[0];
+    c.port[joint].load = c.applied[0];
+    c.port[joint].direction = mode[0];
+    return c;
+  }
+  template <class S, class Force, class PortAt>
+  std::array<S, 7> observe(const Motion<S, 1>& at, const Force& force, const PortAt& port) const {
+    const auto end = [&](auto i) { return port(i).load - force(i); };  // S4 eq. 31
+    return {at.position[0],
+            end(std::integral_constant<int, c11>{}),
+            port(std::integral_constant<int, c11>{}).load,
+            end(std::integral_constant<int, c12>{}),
+            end(std::integral_constant<int, c21>{}),
+            port(std::integral_constant<int, c21>{}).load,
+            end(std::integral_constant<int, c22>{})};
+  }
+};
+
+/// The same where the end sections stretch, so that slip is a motion of its own: DoF 1 + i is the slip of contact i as
+/// an angle, w / r. A wrapped cable weighs next to nothing: its mass only makes the slip a state.
+template <class T>
+struct CcsrmElastic : CcsrmTables<T> {
+  using Base = CcsrmTables<T>;
+  using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
+  static constexpr double mass = 1e-6;  ///< kg: far below that of a strand, so that slip follows the forces at once
+  static constexpr int dof = 5, stated = 1, directions = 5;
+  static constexpr std::array<Port, 10> ports{{{"joint", 0},
+                                               {"contact", 1, -1, Axis::linear, false, "contact_11"},
+                                               {"contact", 2, -1, Axis::linear, false, "contact_12"},
+                                               {"contact", 3, -1, Axis::linear, false, "contact_21"},
+                                               {"contact", 4, -1, Axis::linear, false, "contact_22"},
+                                               {"cable", -1, -1, Axis::linear},
+                                               {"ends", -1, -1, Axis::linear, false, "end_11"},
+                                               {"ends", -1, -1, Axis::linear, false, "end_12"},
+                                               {"ends", -1, -1, Axis::linear, false, "end_21"},
+                                               {"ends", -1, -1, Axis::linear, false, "end_22"}}};
+  static constexpr bool joined[10][5] = {
+      {true}, {false, true}, {false, false, true}, {false, false, false, true}, {false, false, false, false, true}};
+  std::array<T, 5> inverse_inertia;
+  T lever[10][5];
+
+  void prepare() {
+    const T& r = this->pulley_radius;
+    inverse_inertia[0] = 1.0 / this->inertia;
+    for (std::size_t i = 1; i < 5; ++i) inverse_inertia[i] = 1.0 / (mass * r * r);
+    for (auto& row : lever)
+      for (auto& cell : row) cell = T(0.0);
+    lever[joint][0] = T(1.0);
+    for (std::size_t i = 0; i < 4; ++i) lever[c11 + i][1 + i] = r;
+  }
+  std::array<T, 5> rigid_shape() const { return {T(1.0), T(-1.0), T(1.0), T(1.0), T(-1.0)}; }
+  /// Nothing is stretched at first: slip is that of the joints.
+  template <class Inputs>
+  void begin(Motion<T, 5>& at, const Inputs& in) const {
+    const T turn[2] = {at.position[0], in.template input<0>(at.time)};
+    for (std::size_t i = 0; i < 4; ++i) at.position[1 + i] = Base::flip[i] * turn[i % 2];
+  }
+
+  template <class S, class Modes, class Inputs>
+  Coupling<S, 10, 5> couple(const Motion<S, 5>& at, const Modes& mode, const Inputs& in) const {
+    Coupling<S, 10, 5> c;
+    const T& r = this->pulley_radius;
+    const S turn[2] = {at.position[0], in.template input<0>(at.time)};
+    const auto& slip = at.position;
+    const S stretch[2] = {-r * (slip[1] + slip[2]), -r * (slip[3] + slip[4])};
+    const S rate[2] = {-r * (at.velocity[1] + at.velocity[2]), -r * (at.velocity[3] + at.velocity[4])};
+    c.port[cable].position = 0.5 * (stretch[1] - stretch[0]);
+    c.port[cable].velocity = 0.5 * (rate[1] - rate[0]);
+    this->load_contacts(c, turn[0], turn[1], stretch);
+    for (std::size_t i = 0; i < 4; ++i) {
+      c.port[c11 + i].velocity = r * at.velocity[1 + i];
+      c.port[c11 + i].direction = mode[1 + i];
+      auto& end = c.port[e11 + i];
+      end.position = r * (slip[1 + i] - Base::flip[i] * turn[i % 2]);
+      end.load = Base::pulling(S(this->pretension + std::get<e11>(this->slot).respond(end, S{}).force));
+      c.applied[1 + i] = r * (c.port[c11 + i].load - end.load);
+    }
+    c.applied[0] = r * (c.port[e11 + 2].load - c.port[e11].load);
+    c.port[joint].position = at.position[0];
+    c.port[joint].velocity = at.velocity[0];
+    c.port[joint].load = c.applied[0];
+    c.port[joint].direction = mode[0];
+    return c;
+  }
+  template <class S, class Force, class PortAt>
+  std::array<S, 7> observe(const Motion<S, 5>& at, const Force&, const PortAt& port) const {
+    const auto load = [&](auto i) { return port(i).load; };
+    return {at.position[0],
+            load(std::integral_constant<int, e11>{}),
+            load(std::integral_constant<int, c11>{}),
+            load(std::integral_constant<int, e11 + 1>{}),
+            load(std::integral_constant<int, e11 + 2>{}),
+            load(std::integral_constant<int, c21>{}),
+            load(std::integral_constant<int, e11 + 3>{})};
+  }
+};
+}  // namespace tendonlab::systems

@@ -1,0 +1,35 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::transmission {
+/// Stribeck friction of a contact that states friction coefficients: at low speed the static one takes over.
+///
+///   g -> g (1 + p (mu_s / mu - 1) exp(-(v/v_s)^2))                        (S4 eqs 27, 29)
+///
+/// v: sliding velocity, m/s. mu: kinetic coefficient, one parameter with the law that makes the level. mu_s: static
+/// coefficient. p: share of it, 1: all; p = 0 switches it off. No memory.
+template <class T>
+struct Stribeck {
+  static constexpr std::string_view name = "stribeck", source = "S4 eqs 27, 29",
+                                    equation = "g (1 + p (mu_s/mu - 1) exp(-(v/v_s)^2)) sgn(v)",
+                                    summary = "Stribeck friction: a larger friction coefficient at low speed";
+  static constexpr unsigned roles = role::factor | role::refines, sees = sees_velocity;
+  T static_coefficient, share;
+  Divisor<T> falloff, kinetic_coefficient;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&Stribeck::kinetic_coefficient, "friction_coefficient", Dimension::ratio,
+                                Purpose::shape, 0.15, 1e-9, 10.0, "kinetic friction coefficient of the contact"),
+                      parameter(&Stribeck::static_coefficient, "static_friction_coefficient", Dimension::ratio,
+                                Purpose::shape, 0.18, 0.0, 10.0, "static friction coefficient of the contact"),
+                      parameter(&Stribeck::falloff, "stribeck_velocity", Dimension::flow, Purpose::shape, 0.1, 1e-9,
+                                inf, "speed at which 1/e of the excess is left"),
+                      parameter(&Stribeck::share, "stribeck_share", Dimension::ratio, Purpose::share, 1.0, 0.0, 1.0,
+                                "share of the excess that acts")};
+  }
+  template <class S>
+  S factor(const Sliding<S>& at) const {
+    return 1.0 + (share * (static_coefficient / kinetic_coefficient - 1.0)) * exp(-square(at.velocity / falloff));
+  }
+};
+}  // namespace tendonlab::transmission
