@@ -113,13 +113,16 @@ std::string represent(const L& law) {
 
 /// What a law sees in a port of its own: the modes that a stepper would hold follow from the motion, 0 at rest.
 template <class L>
-Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0) {
+Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0,
+                     double preload = 0.0) {
   constexpr double largest = std::numeric_limits<double>::max();
   require_within("velocity", velocity, -largest, largest, both_units(Dimension::flow));
   require_within("position", position, -largest, largest, both_units(Dimension::displacement));
   require_within("load", load, -largest, largest, both_units(Dimension::effort));
   require_within("wrap_angle", wrap, -largest, largest, "rad");
-  Sliding<double> at{velocity, position, load, static_cast<double>((velocity > 0) - (velocity < 0)), 0.0, wrap};
+  require_within("preload", preload, -largest, largest, both_units(Dimension::effort));
+  Sliding<double> at{velocity, position, load,    static_cast<double>((velocity > 0) - (velocity < 0)),
+                     0.0,      wrap,     preload, 0.0};
   if constexpr (plays<L>(role::motion)) {
     const double half_gap = law->half_gap();
     at.side = static_cast<double>((position > half_gap) - (position < -half_gap));
@@ -128,27 +131,31 @@ Sliding<double> seen(const L* law, double velocity, double position, double load
 }
 
 using pybind11::arg;
-#define TENDONLAB_AT \
-  py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0, arg("wrap_angle") = 0.0
+#define TENDONLAB_AT                                                                                       \
+  py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0, arg("wrap_angle") = 0.0, \
+                 arg("preload") = 0.0
 
 template <class L, class Class>
 void bind_dry(Class& law) {
   if constexpr (plays<L>(role::level))
-    law.def("level", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
-              return of->level(seen(of, velocity, position, load, wrap));
+    law.def("level",
+            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
+              return of->level(seen(of, velocity, position, load, wrap, preload));
             }),
             TENDONLAB_AT, "Its share of the dry friction level, a magnitude, N*m or N.");
   if constexpr (plays<L>(role::factor))
-    law.def("factor", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
-              return of->factor(seen(of, velocity, position, load, wrap));
+    law.def("factor",
+            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
+              return of->factor(seen(of, velocity, position, load, wrap, preload));
             }),
             TENDONLAB_AT, "What it multiplies the dry friction level by, 1.");
 }
 template <class L, class Class>
 void bind_force(Class& law) {
   if constexpr (!plays<L>(role::memory) && plays<L>(role::level | role::force))
-    law.def("force", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
-              const auto at = seen(of, velocity, position, load, wrap);
+    law.def("force",
+            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
+              const auto at = seen(of, velocity, position, load, wrap, preload);
               double sum = 0;
               if constexpr (plays<L>(role::level)) sum += at.direction * of->level(at);
               if constexpr (plays<L>(role::force)) sum += of->force(at);
@@ -157,7 +164,8 @@ void bind_force(Class& law) {
             TENDONLAB_AT,
             "Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest. velocity in "
             "rad/s\n"
-            "or m/s, position in rad or m, load in N*m or N, wrap_angle in rad; arrays broadcast.");
+            "or m/s, position in rad or m, load in N*m or N, wrap_angle in rad, preload (of a pretension) in N*m "
+            "or N; arrays broadcast.");
 }
 template <class L, class Class>
 void bind_memory(Class& law) {
@@ -272,7 +280,8 @@ void bind_group(py::module_& module, const char* group, const char* doc, py::lis
 void bind_laws(py::module_& module) {
   py::list registered;
   bind_group<friction::All>(module, "friction", "Friction laws.", registered);
-  bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
+  bind_group<Joined<transmission::All, transmission::Sheath>::type>(module, "transmission",
+                                                                    "Laws of cables, sheaths and gears.", registered);
   bind_group<loading::All>(module, "loading", "Laws of what acts on the joint from outside.", registered);
   bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);

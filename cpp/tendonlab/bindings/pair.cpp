@@ -18,7 +18,8 @@ struct Sheaths {
   Pair at(double coefficient) const {
     require_within("friction_coefficient", coefficient, 0.0, inf, "1");
     const AlongSheath<double> along = transmission::along_sheath(coefficient, arc_length, turning);
-    return {along, input_radius, output_radius, pretension * (uniform_pretension ? arc_length.back() : along.psi_alpha)};
+    return {along, input_radius, output_radius,
+            pretension * (uniform_pretension ? arc_length.back() : along.psi_alpha)};
   }
 };
 Sheaths make_sheaths(Numbers arc_length, Numbers turning, double pretension, double input_radius, double output_radius,
@@ -36,7 +37,8 @@ Sheaths make_sheaths(Numbers arc_length, Numbers turning, double pretension, dou
   return {std::move(arc_length), std::move(turning), pretension, input_radius, output_radius, uniform_pretension};
 }
 
-/// The whole law sample by sample (S3 eq. 19-21). `friction`: mu_d, mu_s, v_s, v_threshold, s_v in the unit of velocity.
+/// The whole law sample by sample (S3 eq. 19-21). `friction`: mu_d, mu_s, v_s, v_threshold, s_v in the unit of
+/// velocity.
 py::dict transmit(const Sheaths& of, const Array& torque, const Array& velocity, const std::array<double, 5>& friction,
                   double periods, double start) {
   if (torque.ndim() != 1 || velocity.ndim() != 1 || torque.size() != velocity.size())

@@ -13,8 +13,9 @@ namespace tendonlab::transmission {
 template <class T>
 struct SheathCapstan {
   static constexpr std::string_view name = "capstan", source = "S3 eq. 18, 19",
-                                    equation = "2 r_out T_s (beta - alpha) Psi_a/(Psi_a + Psi_b) sgn(v), alpha = "
-                                               "1/beta = exp(-mu theta), mu = mu_d + (mu_s - mu_d) exp(-(v/v_s)^2)",
+                                    equation =
+                                        "2 r_out T_s (beta - alpha) Psi_a/(Psi_a + Psi_b) sgn(v), alpha = "
+                                        "1/beta = exp(-mu theta), mu = mu_d + (mu_s - mu_d) exp(-(v/v_s)^2)",
                                     summary = "capstan friction of a pretensioned tendon pair in bent sheaths";
   static constexpr unsigned roles = role::level, sees = sees_velocity | sees_wrap | sees_preload;
   T kinetic, resting;

@@ -23,9 +23,9 @@ struct VelocityGate {
     return periods == 1.0 ? shut : T(power(shut, T(periods)));
   }
 };
-/// The output that follows `target` but for the share `kept` of what it was.
+/// The output that follows `target` but for the share `kept` of what it was; held bit for bit where all is kept.
 template <class T>
 T follow(const T& target, const T& previous, const T& kept) {
-  return target + kept * (previous - target);
+  return kept * previous + (1.0 - kept) * target;
 }
 }  // namespace tendonlab::transmission
