@@ -1,4 +1,4 @@
-"""From optical markers on a sheath to its arc length, curvature and wrap angle (S3 eq. 4, 5), in the plane and in space.
+"""From optical markers on a sheath to its arc length, curvature and wrap angle (S3 eq. 4, 5), in plane and space.
 
 An interpolating spline follows every error of its markers, and curvature is a second derivative: more markers make it
 worse, not better. Hence `smoothing`, and `wrap_angle_uncertainty`, which says what marker noise does to the angle."""
@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline, splev, splprep
 
 from tendonlab.catalog import nearest
 from tendonlab.errors import DatasetError, ParameterError
-from tendonlab.papers.s3.shapes import Shape
+from tendonlab.procedures.sheath_shape import Shape
 
 NUM_SAMPLES = 500  # of the paper
 RULES = ("left", "trapezoid", "turning")
@@ -135,7 +135,9 @@ def wrap_angle_uncertainty(
         raise ParameterError(f"marker_sd = {marker_sd}: expected a positive sd, m")
     rng = np.random.default_rng(seed)
     value = spline.wrap_angle(rule=rule)
-    options: dict[str, Any] = {name: getattr(spline, name) for name in ("kind", "parameter", "smoothing", "num_samples")}
+    options: dict[str, Any] = {
+        name: getattr(spline, name) for name in ("kind", "parameter", "smoothing", "num_samples")
+    }
     angles = [
         MarkerSpline(spline.points + rng.normal(0.0, marker_sd, spline.points.shape), **options).wrap_angle(rule=rule)
         for _ in range(num_resamples)
@@ -150,7 +152,9 @@ def _checked(points: np.ndarray) -> np.ndarray:
     gaps = np.linalg.norm(points[:, None] - points[None], axis=2) + np.diag(np.full(len(points), np.inf))
     if gaps.min() == 0.0:
         i, j = np.argwhere(gaps == 0.0)[0]
-        raise DatasetError(f"markers {i} and {j} lie at one place: the curve has no direction there; expected one of them")
+        raise DatasetError(
+            f"markers {i} and {j} lie at one place, where the curve has no direction; expected one of them"
+        )
     return points
 
 

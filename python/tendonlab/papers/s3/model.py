@@ -9,8 +9,9 @@ import numpy as np
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.rig import FrictionParameters, Rig, assumed_rig
-from tendonlab.papers.s3.shapes import BumpShape, Shape
+from tendonlab.papers.s3.shapes import BumpShape
 from tendonlab.papers.s3.statics import sheaths
+from tendonlab.procedures.sheath_shape import Shape
 
 if TYPE_CHECKING:
     import pandas as pd

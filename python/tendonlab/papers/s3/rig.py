@@ -8,10 +8,10 @@ from functools import cache
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
+from tendonlab.procedures import pretension_from_load_cells
 
 DEGREE = math.pi / 180.0
 VELOCITY_UNITS = {"deg/s": DEGREE, "rad/s": 1.0}  # rad/s per unit
-GRAVITY = 9.80665
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +77,7 @@ class Rig:
     K_d: float
     J_A: float
     J_B: float
-    b_A: float
+    b_A: float  # noqa: N815
     A: float
 
 
@@ -101,8 +101,8 @@ def assumed_rig() -> Rig:
 
 
 def cable_pretension(reading: float) -> float:
-    """T_s, N, of each cable from the mean reading of the two load cells, kg. Source: S3 eq. 3."""
-    return 0.5 * GRAVITY * reading
+    """T_s, N, of each cable where both load cells read `reading`, kg. Source: S3 eq. 3."""
+    return float(pretension_from_load_cells(reading, reading))
 
 
 def free_body(load_force: float, *, guide_force: float = 0.0) -> tuple[float, float]:
