@@ -31,6 +31,7 @@ actuation: Laws
 friction: Laws
 loading: Laws
 sensing: Laws
+sheath: Laws
 transmission: Laws
 
 def units() -> dict[str, tuple[str, str]]: ...

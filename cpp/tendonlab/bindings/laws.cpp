@@ -236,6 +236,7 @@ py::tuple roles() {
   if (plays<L>(role::factor)) names.append("factor");
   if (plays<L>(role::force)) names.append("force");
   if (plays<L>(role::memory)) names.append("memory");
+  if (L::roles == role::refines) names.append("refines");
   if (L::roles == 0) names.append("signal");
   return py::tuple(names);
 }
@@ -280,8 +281,8 @@ void bind_group(py::module_& module, const char* group, const char* doc, py::lis
 void bind_laws(py::module_& module) {
   py::list registered;
   bind_group<friction::All>(module, "friction", "Friction laws.", registered);
-  bind_group<Joined<transmission::All, transmission::Sheath>::type>(module, "transmission",
-                                                                    "Laws of cables, sheaths and gears.", registered);
+  bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
+  bind_group<transmission::Sheath>(module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
   bind_group<loading::All>(module, "loading", "Laws of what acts on the joint from outside.", registered);
   bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);

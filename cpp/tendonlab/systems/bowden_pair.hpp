@@ -17,7 +17,7 @@ struct BowdenPair {
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
   static constexpr bool sampled = true, commanded = false, plain_names = true;
-  static constexpr std::size_t carried = 2;    ///< output of the sample before, travel of the drive
+  static constexpr std::size_t carried = 3;    ///< output of the gate, torque that is held, travel of the drive
   static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
   static constexpr std::array<Port, 1> ports{{{"sheath"}}};
   static constexpr std::array<Input, 2> inputs{
@@ -60,32 +60,48 @@ struct BowdenPair {
   Sample<T, 1, 1> evaluate(const Inputs& in, Memory& memory) const {
     const auto& sheath = std::get<0>(slot);
     const T torque = actuation.apply(in.template input<0>()), velocity = in.template input<1>();
-    const T ratio = output_radius / input_radius;
-    T& travel = memory.own[1];
+    T& travel = memory.own[2];
     travel = travel + in.dt * velocity;
-    Sliding<T> at = sliding(velocity, travel, T(ratio * torque), wrap_angle);
+    Sliding<T> at = sliding(velocity, travel, T((output_radius / input_radius) * torque), wrap_angle);
     at.preload = 2.0 * output_radius * pretension;
-    const T friction = answer(sheath, at, memory.slot[0], in.dt), middle = gain(at) * at.load;
-    const transmission::VelocityGate<T> gate{threshold_velocity, threshold_slope};
-    T kept = gate.kept(velocity, memory.begun ? in.dt / gate_period : 1.0);
-    sheath.template each<role::memory>([&](const auto& bristle) { kept = bristle.dry_share() * kept; });
-    T& output = memory.own[0];
-    output = transmission::follow(T(middle - friction), memory.begun ? output : middle, kept);
+    const Sliding<T> seen = moved(at);
+    const T friction = answer(sheath, at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
+    if (!memory.begun) memory.own = {middle, middle, travel};
+    T output = gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
+    each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
+      memory.own[1] = law.held(memory.own[1], middle, sheath.dry_level(seen));
+      T smooth{};
+      sheath.template each<role::force>([&](const auto& other) { smooth = smooth + other.force(seen); });
+      output = output + law.share * (memory.own[1] - smooth - output);
+    });
     return {{output}, {at}, {friction}};
   }
 
  private:
-  /// K_in over the ratio of radii: 1 but for a sheath that is bent unevenly.
-  T gain(Sliding<T> at) const {
-    const auto& sheath = std::get<0>(slot);
-    sheath.template each<role::motion>([&](const auto& law) { at = law.motion(at); });
-    T gain(1.0);
-    if (plain(at.skew) == 0.0 && !varies(at.skew)) return gain;
-    sheath.template each<role::level>([&](const auto& law) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(law)>, transmission::SheathCapstan<T>>)
-        gain = law.pair(at).torque_gain();
+  /// Calls f(law) for the laws of the sheath of type `Law` that are on.
+  template <class Law, class F>
+  void each_of(F&& f) const {
+    std::get<0>(slot).template each<Law::roles>([&](const auto& law) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Law>) f(law);
     });
+  }
+  /// What the laws see behind those that change it.
+  Sliding<T> moved(Sliding<T> at) const {
+    std::get<0>(slot).template each<role::motion>([&](const auto& law) { at = law.motion(at); });
+    return at;
+  }
+  /// K_in over the ratio of radii: 1 but for a sheath that is bent unevenly.
+  T gain(const Sliding<T>& seen) const {
+    T gain(1.0);
+    if (plain(seen.skew) == 0.0 && !varies(seen.skew)) return gain;
+    each_of<transmission::SheathCapstan<T>>([&](const auto& law) { gain = law.pair(seen).torque_gain(); });
     return gain;
+  }
+  /// The output behind the gate, remembered in `before`; a bristle takes the place of the gate by its share.
+  T gated(const T& target, const T& velocity, double periods, T& before) const {
+    T kept = transmission::VelocityGate<T>{threshold_velocity, threshold_slope}.kept(velocity, periods);
+    std::get<0>(slot).template each<role::memory>([&](const auto& law) { kept = law.dry_share() * kept; });
+    return before = transmission::follow(target, before, kept);
   }
 };
 }  // namespace tendonlab::systems

@@ -88,7 +88,7 @@ class MarkerSpline:
     def curvature(self) -> np.ndarray:
         """kappa at each sample, 1/m, (N,). Source: S3 eq. 5."""
         _, _, first, second = self.derivatives()
-        return _cross_norm(first, second) / np.linalg.norm(first, axis=1) ** 3
+        return np.asarray(_cross_norm(first, second) / np.linalg.norm(first, axis=1) ** 3)
 
     def turning(self, *, rule: str = "trapezoid") -> np.ndarray:
         """phi, the angle turned from the first sample on, rad, (N,).
@@ -175,5 +175,5 @@ def _running(density: np.ndarray, t: np.ndarray, rule: str) -> np.ndarray:
 def _cross_norm(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """|a × b| row by row, in the plane too."""
     if a.shape[1] == 2:
-        return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    return np.linalg.norm(np.cross(a, b), axis=1)
+        return np.asarray(np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))
+    return np.asarray(np.linalg.norm(np.cross(a, b), axis=1))

@@ -56,9 +56,9 @@ class Chain:
     def node_turning(self) -> np.ndarray:
         """phi at the borders of the nodes' even stretches, rad, (num_nodes + 1,)."""
         if isinstance(self.shape, BumpShape):
-            return self.shape.turning(np.linspace(0.0, self.shape.length, self.num_nodes + 1))
+            return np.asarray(self.shape.turning(np.linspace(0.0, self.shape.length, self.num_nodes + 1)))
         s = np.linspace(0.0, self.shape.length, self.num_nodes + 1)
-        return np.interp(s, self.shape.arc_length, self.shape.turning)
+        return np.asarray(np.interp(s, self.shape.arc_length, self.shape.turning))
 
     def simulate(
         self,
@@ -131,7 +131,7 @@ class _Equations:
         """e_0 … e_n, N·m; of many states, (size, m), too."""
         n = self.chain.num_nodes
         q = np.concatenate([y[:1], y[2 : n + 2], y[-2:-1]])
-        return self.stiffness * (q[:-1] - q[1:])
+        return np.asarray(self.stiffness * (q[:-1] - q[1:]))
 
     def nodes(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Torques e, friction levels F, speeds v of the nodes, and their bristles z."""

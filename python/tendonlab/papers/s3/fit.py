@@ -124,7 +124,7 @@ def weakness(records: Sequence[Record], p: FrictionParameters) -> pd.DataFrame:
     rows = {}
     for name in NAMES:
         value = getattr(p, name)
-        less, more = (objective(replace(p, **{name: value * f})) - base for f in (0.8, 1.2))
+        less, more = (objective(p.with_values({name: value * f})) - base for f in (0.8, 1.2))
         rows[name] = {
             "value": value,
             "rise_less": less,
@@ -140,13 +140,13 @@ def profile(records: Sequence[Record], p: FrictionParameters, name: str, values:
     if name not in NAMES:
         raise ParameterError(f"name = {name!r}: expected one of {', '.join(NAMES)}")
     objective = Objective(records)
-    errors = [objective(replace(p, **{name: float(value)})) for value in values]
+    errors = [objective(p.with_values({name: float(value)})) for value in values]
     return pd.Series(errors, index=pd.Index(list(values), name=name), name="mse")
 
 
 def _moved(p: FrictionParameters, free: Sequence[str], x: np.ndarray) -> FrictionParameters:
     """`p` with its free numbers at exp(x): s_v follows v_thres, and mu_s follows mu_d unless it is free."""
-    moved = replace(p, **{name: float(np.exp(v)) for name, v in zip(free, x, strict=True)})
+    moved = p.with_values({name: float(np.exp(v)) for name, v in zip(free, x, strict=True)})
     if "mu_s" not in free:
         moved = replace(moved, mu_s=moved.mu_d * p.mu_s / p.mu_d)
     return replace(moved, s_v=p.s_v * (p.v_thres / moved.v_thres) ** 2)
@@ -189,4 +189,4 @@ def _logs(p: FrictionParameters) -> np.ndarray:
 
 def _from_logs(x: np.ndarray, like: FrictionParameters) -> FrictionParameters:
     values = np.exp(np.clip(x, -30.0, 30.0))  # a simplex may wander; beyond this the law no longer changes
-    return replace(like, **{name: float(v) for name, v in zip(NAMES, values, strict=True)})
+    return like.with_values({name: float(v) for name, v in zip(NAMES, values, strict=True)})

@@ -19,8 +19,6 @@ from tendonlab.papers.s3.trajectories import Trajectory, table_1
 from tendonlab.procedures import pretension_from_load_cells
 from tendonlab.procedures.sheath_shape import Shape
 
-KNOWN, UNCERTAIN = 0.0, 0.3  # sd over value of what the simulator's user knows, and of what was fitted elsewhere
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Record:
@@ -46,7 +44,7 @@ class Record:
 
     def mse(self, p: FrictionParameters) -> float:
         """Mean squared error of that prediction, (N·m)²."""
-        return mean_squared_error(self.log["tau_out"], self.predict(p).tau_out)
+        return mean_squared_error(self.log["tau_out"].to_numpy(), self.predict(p).tau_out)
 
 
 def run_chain(
@@ -105,11 +103,11 @@ def to_dataset(
     p: FrictionParameters,
     *,
     name: str = "s3-twin",
-    gate_uncertain: bool = True,
+    uncertain: float = 0.1,
     rig: Rig | None = None,
 ) -> Dataset:
     """Records as a library dataset of kind `bowden_pair` whose simulator holds `p`: geometry and the steepness of the
-    gate are known, friction coefficient and threshold uncertain by 30 %.
+    gate are known; friction coefficient and threshold have the sd `uncertain` over value that an earlier fit left.
 
     Pretension and wrap angle are conditions of each experiment. Only the turn of the sheath enters, not how it is
     spread: its curvature counts as the same from both ends."""
@@ -125,10 +123,9 @@ def to_dataset(
         **{key: si[key] for key in ("static_friction_coefficient", "stribeck_velocity", "threshold_slope")},
     }
     free = {key: si[key] for key in ("friction_coefficient", "threshold_velocity")}
-    parameters = {key: NominalParameter(value=value, sd=KNOWN, lower=0.0) for key, value in known.items()}
+    parameters = {key: NominalParameter(value=value, sd=0.0, lower=0.0) for key, value in known.items()}
     for key, value in free.items():
-        sd = UNCERTAIN * value if gate_uncertain or key == "friction_coefficient" else KNOWN
-        parameters[key] = NominalParameter(value=value, sd=sd, lower=0.0)
+        parameters[key] = NominalParameter(value=value, sd=uncertain * value, lower=0.0)
     split = [(record, "train") for record in train] + [(record, "test") for record in test]
     return Dataset(
         name=name,

@@ -32,7 +32,7 @@ class Prediction:
         """By how much the output starts to move where the gate opens, N·m: a rig, whose velocity and torque are
         linked, has no such jumps, so they measure how far the gate is from one."""
         opens = np.flatnonzero((self.gate[1:] >= 0.5) & (self.gate[:-1] < 0.5)) + 1
-        return np.abs(self.tau_out[opens] - self.tau_out[opens - 1])
+        return np.asarray(np.abs(self.tau_out[opens] - self.tau_out[opens - 1]))
 
 
 def predict(

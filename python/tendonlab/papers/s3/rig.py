@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
@@ -45,6 +47,11 @@ class FrictionParameters:
             velocity_unit=velocity_unit,
         )
 
+    def with_values(self, values: Mapping[str, float]) -> FrictionParameters:
+        """The same law with other values for some of the numbers, in the same unit of velocity."""
+        given: dict[str, Any] = dict(values)
+        return replace(self, **given)
+
     def system_parameters(self) -> dict[str, float]:
         """The same numbers, SI, under the names of `bowden_pair`."""
         si = self.in_unit("rad/s")
@@ -61,7 +68,8 @@ class FrictionParameters:
 def paper_parameters() -> FrictionParameters:
     """p as printed, identified by the paper on theta_6 at a load-cell reading of 54 kg."""
     values = table("S3_fitted_parameters").set_index("name")["value"]
-    return FrictionParameters(**{str(name): float(value) for name, value in values.items()})
+    given: dict[str, Any] = {str(name): float(value) for name, value in values.items()}
+    return FrictionParameters(**given)
 
 
 @dataclass(frozen=True, kw_only=True)

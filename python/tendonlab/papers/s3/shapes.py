@@ -67,10 +67,9 @@ class BumpShape:
 @cache
 def paper_shapes() -> tuple[BumpShape, ...]:
     """theta_1 … theta_10 of Fig. 4: the printed end distances with the assumed geometry."""
-    rows = table("S3_shapes")
+    rows = 0.01 * table("S3_shapes")[["end_distance_cm", "assumed_L_cm"]]
     return tuple(
-        BumpShape.with_end_distance(0.01 * row.end_distance_cm, length=0.01 * row.assumed_L_cm)
-        for row in rows.itertuples()
+        BumpShape.with_end_distance(float(distance), length=float(length)) for distance, length in rows.to_numpy()
     )
 
 
