@@ -2,7 +2,7 @@
 
 from importlib.metadata import version as _version
 
-from tendonlab._core import actuation, friction, loading, sensing, transmission
+from tendonlab._core import actuation, friction, loading, sensing, sheath, transmission
 from tendonlab.catalog import kinds, system_info
 from tendonlab.data import Dataset, Experiment, load
 from tendonlab.diagnose import Diagnosis, diagnose
@@ -31,6 +31,7 @@ __all__ = [
     "load",
     "loading",
     "sensing",
+    "sheath",
     "sweep",
     "system_info",
     "transmission",

@@ -8,6 +8,7 @@ namespace py = pybind11;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 void bind_laws(py::module_& module);
+void bind_pair(py::module_& module);
 void bind_systems(py::module_& module);
 void bind_routing(py::module_& module);
 void bind_identify(py::module_& module);

@@ -119,12 +119,15 @@ void require_finite(std::string_view name, double value, Dimension dimension) {
 
 /// What a law sees in a port of its own: the modes that a stepper would hold follow from the motion, 0 at rest.
 template <class L>
-Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0) {
+Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0,
+                     double preload = 0.0) {
   require_finite("velocity", velocity, Dimension::flow);
   require_finite("position", position, Dimension::displacement);
   require_finite("load", load, Dimension::effort);
   require_finite("wrap_angle", wrap, Dimension::angle);
-  Sliding<double> at{velocity, position, load, static_cast<double>((velocity > 0) - (velocity < 0)), 0.0, wrap};
+  require_finite("preload", preload, Dimension::effort);
+  Sliding<double> at{velocity, position, load,    static_cast<double>((velocity > 0) - (velocity < 0)),
+                     0.0,      wrap,     preload, 0.0};
   if constexpr (plays<L>(role::motion)) {
     const double half_gap = law->half_gap();
     at.side = static_cast<double>((position > half_gap) - (position < -half_gap));
@@ -133,27 +136,31 @@ Sliding<double> seen(const L* law, double velocity, double position, double load
 }
 
 using pybind11::arg;
-#define TENDONLAB_AT \
-  py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0, arg("wrap_angle") = 0.0
+#define TENDONLAB_AT                                                                                       \
+  py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0, arg("wrap_angle") = 0.0, \
+                 arg("preload") = 0.0
 
 template <class L, class Class>
 void bind_dry(Class& law) {
   if constexpr (plays<L>(role::level))
-    law.def("level", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
-              return of->level(seen(of, velocity, position, load, wrap));
+    law.def("level",
+            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
+              return of->level(seen(of, velocity, position, load, wrap, preload));
             }),
             TENDONLAB_AT, "Its share of the dry friction level, a magnitude, N*m or N.");
   if constexpr (plays<L>(role::factor))
-    law.def("factor", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
-              return of->factor(seen(of, velocity, position, load, wrap));
+    law.def("factor",
+            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
+              return of->factor(seen(of, velocity, position, load, wrap, preload));
             }),
             TENDONLAB_AT, "What it multiplies the dry friction level by, 1.");
 }
 template <class L, class Class>
 void bind_force(Class& law) {
   if constexpr (!plays<L>(role::memory) && plays<L>(role::level | role::force))
-    law.def("force", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
-              const auto at = seen(of, velocity, position, load, wrap);
+    law.def("force",
+            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
+              const auto at = seen(of, velocity, position, load, wrap, preload);
               double sum = 0;
               if constexpr (plays<L>(role::level)) sum += at.direction * of->level(at);
               if constexpr (plays<L>(role::force)) sum += of->force(at);
@@ -162,7 +169,8 @@ void bind_force(Class& law) {
             TENDONLAB_AT,
             "Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest. velocity in "
             "rad/s\n"
-            "or m/s, position in rad or m, load in N*m or N, wrap_angle in rad; arrays broadcast.");
+            "or m/s, position in rad or m, load in N*m or N, wrap_angle in rad, preload (of a pretension) in N*m "
+            "or N; arrays broadcast.");
 }
 template <class L, class Class>
 void bind_memory(Class& law) {
@@ -233,6 +241,7 @@ py::tuple roles() {
   if (plays<L>(role::factor)) names.append("factor");
   if (plays<L>(role::force)) names.append("force");
   if (plays<L>(role::memory)) names.append("memory");
+  if (L::roles == role::refines) names.append("refines");
   if (L::roles == 0) names.append("signal");
   return py::tuple(names);
 }
@@ -281,6 +290,7 @@ void bind_laws(py::module_& module) {
   using Loading = Joined<loading::All, loading::Known>::type;
   bind_group<Friction>(module, "friction", "Friction laws.", registered);
   bind_group<Transmission>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
+  bind_group<transmission::Sheath>(module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
   bind_group<Loading>(module, "loading", "Laws of what acts on the joint from outside.", registered);
   bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);

@@ -10,9 +10,18 @@ struct Sliding {
   Plain<S> direction{};              ///< +1 or -1; 0 while the port sticks
   Plain<S> side{};                   ///< flank of a gap that touches: -1, 0 (none), +1
   S wrap{};                          ///< wrap angle of the cable on its contact, rad
+  S preload{};                       ///< effort that the pretension of the element holds
+  S skew{};                          ///< curvature at the output end of a sheath over its mean, less one
   S speed() const { return direction * velocity; }  ///< |v|, continued smoothly past zero
 };
-enum Sees : unsigned { sees_nothing = 0, sees_velocity = 1, sees_position = 2, sees_load = 4, sees_wrap = 8 };
+enum Sees : unsigned {
+  sees_nothing = 0,
+  sees_velocity = 1,
+  sees_position = 2,
+  sees_load = 4,
+  sees_wrap = 8,
+  sees_preload = 16
+};
 
 /// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
 /// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of

@@ -38,7 +38,8 @@ enum class Dimension {
   inductance,
   torque_per_current,
   acceleration,
-  line_compliance
+  line_compliance,
+  per_flow_squared
 };
 enum class Purpose {
   structure,  ///< of the system itself

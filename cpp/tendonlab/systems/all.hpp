@@ -1,4 +1,5 @@
 #pragma once
+#include "tendonlab/systems/bowden_pair.hpp"
 #include "tendonlab/systems/ccsrm.hpp"
 #include "tendonlab/systems/friction_map.hpp"
 #include "tendonlab/systems/rigid_joint.hpp"
@@ -6,5 +7,5 @@
 #include "tendonlab/systems/two_inertia.hpp"
 
 namespace tendonlab::systems {
-using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting, Ccsrm>;
+using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting, BowdenPair, Ccsrm>;
 }

@@ -38,6 +38,7 @@ T answer(const Slot& slot, const Sliding<T>& at, T& z, double dt) {
       using D = Dual<T, 1>;
       Sliding<D> seen;
       seen.velocity = D(at.velocity), seen.position = D(at.position), seen.load = D(at.load), seen.wrap = D(at.wrap);
+      seen.preload = D(at.preload), seen.skew = D(at.skew);
       seen.direction = at.direction, seen.side = at.side;
       const auto rate = slot.respond(seen, variable<D>(z, 0)).rate;
       const T decay = -rate.d[0];

@@ -3,10 +3,17 @@
 #include "tendonlab/transmission/backlash.hpp"
 #include "tendonlab/transmission/capstan.hpp"
 #include "tendonlab/transmission/compliance.hpp"
+#include "tendonlab/transmission/curvature_skew.hpp"
+#include "tendonlab/transmission/distributed_presliding.hpp"
+#include "tendonlab/transmission/pretension_loss.hpp"
+#include "tendonlab/transmission/sheath_capstan.hpp"
+#include "tendonlab/transmission/slack.hpp"
 #include "tendonlab/transmission/stribeck.hpp"
 
 namespace tendonlab::transmission {
 using All = Laws<Backlash, Compliance>;
 /// Friction of a cable on a pulley, stated by friction coefficients.
 using Contacts = Laws<Capstan, Stribeck, Asymmetry>;
+/// Of pretensioned tendons in sheaths.
+using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack, DistributedPresliding>;
 }  // namespace tendonlab::transmission

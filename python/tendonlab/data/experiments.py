@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tendonlab.catalog import SystemInfo
+from tendonlab.data.conditions import read_conditions
 from tendonlab.data.dataset import Experiment, NominalParameter, SignalSpec
 from tendonlab.data.names import expected_one_of
 from tendonlab.data.parameters import find_parameter, require_within
@@ -87,7 +88,7 @@ def _splits(tables: list[Table]) -> list[str]:
 
 
 def _read_experiment(table: Table, split: str, context: Context) -> Experiment:
-    fixed = table.numbers("conditions")
+    fixed = read_conditions(table, folder=context.folder, info=context.info)
     known = {
         parameter.name
         for parameter in context.info.parameters

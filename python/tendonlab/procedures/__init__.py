@@ -9,16 +9,21 @@ from tendonlab.procedures.filtering import lowpass
 from tendonlab.procedures.jumps import jumps, time_shift
 from tendonlab.procedures.load_cells import LoadCell, pretension_from_load_cells, reactive_torque
 from tendonlab.procedures.maps import MapPoint, friction_map, map_point
+from tendonlab.procedures.markers import MarkerSpline, WrapAngle, sort_markers, wrap_angle_uncertainty
 from tendonlab.procedures.partition import split
 from tendonlab.procedures.plateaus import steady_averages
 from tendonlab.procedures.reversal import reversal_mask, reversals
 from tendonlab.procedures.search import SearchResult, global_search
+from tendonlab.procedures.sheath_shape import Shape
 from tendonlab.procedures.steady import steady_segment
 
 __all__ = [
     "LoadCell",
     "MapPoint",
+    "MarkerSpline",
     "SearchResult",
+    "Shape",
+    "WrapAngle",
     "correlation_shift",
     "friction_map",
     "global_search",
@@ -29,6 +34,7 @@ __all__ = [
     "reactive_torque",
     "reversal_mask",
     "reversals",
+    "sort_markers",
     "split",
     "steady_averages",
     "steady_segment",
@@ -36,4 +42,5 @@ __all__ = [
     "universal_threshold",
     "velocity",
     "wavelet_denoise",
+    "wrap_angle_uncertainty",
 ]

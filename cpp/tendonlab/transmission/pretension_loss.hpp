@@ -1,0 +1,29 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::transmission {
+/// Pretension loss: a constant share of the pretension that was read is not there where the cable slides.
+///
+///   P -> P (1 - c)                                                         (S3 sec. 6, T_s -> scale T_s)
+///
+/// P: torque (tension) that the pretension holds, N·m (N). c < 0: more pretension than was read. c = 0 switches it off.
+/// No memory. Changes what the later laws see, friction and slack alike.
+template <class T>
+struct PretensionLoss {
+  static constexpr std::string_view name = "pretension_loss", source = "S3 sec. 6", equation = "T_s (1 - c)",
+                                    summary = "pretension loss: a share of the pretension is missing";
+  static constexpr unsigned roles = role::motion | role::refines, sees = sees_preload;
+  T pretension_loss;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&PretensionLoss::pretension_loss, "pretension_loss", Dimension::ratio,
+                                Purpose::amplitude, 0.1, -10.0, 1.0, "share of the pretension that is missing")};
+  }
+  template <class S>
+  Sliding<S> motion(Sliding<S> at) const {
+    at.preload = (1.0 - pretension_loss) * at.preload;
+    return at;
+  }
+  T half_gap() const { return T(0.0); }
+};
+}  // namespace tendonlab::transmission

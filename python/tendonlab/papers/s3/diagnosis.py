@@ -1,0 +1,127 @@
+"""S3's own gap on its twin: runs in which something happens that the paper's model lacks, as datasets to diagnose.
+
+The friction coefficient of every case is the one that the paper's model gets from theta_6 at 54 kg, 15 N·m and 0.1 Hz,
+where neither slack nor superposition shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+
+import numpy as np
+
+from tendonlab.catalog import nearest
+from tendonlab.data import Dataset
+from tendonlab.errors import ParameterError
+from tendonlab.papers.s3.fit import fit_gradient
+from tendonlab.papers.s3.groups import Record, run_chain, to_dataset
+from tendonlab.papers.s3.rig import FrictionParameters
+from tendonlab.papers.s3.trajectories import Trajectory
+
+SAMPLE_RATE = 100.0  # Hz: what happens takes tenths of a second
+GATE_STEEPNESS = 15.0  # s_v v_thres² of the simulator's gate: soft enough to have a slope that a fit can follow
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Withheld:
+    """A case: `records` to fit, `held_out` to judge on; what is withheld (`effect`), how the twin did it (`told`)."""
+
+    effect: str
+    told: str
+    records: tuple[Record, ...] = field(repr=False)
+    held_out: tuple[Record, ...] = field(repr=False)
+    uncertain: float = 0.03
+
+    def dataset(self) -> Dataset:
+        """As a dataset of kind `bowden_pair` whose simulator lacks the effect."""
+        return to_dataset(self.records, self.held_out, identified(), name=self.effect, uncertain=self.uncertain)
+
+
+@cache
+def identified() -> FrictionParameters:
+    """The paper's model identified on theta_6 at 54 kg, 15 N·m and 0.1 Hz, with a gate that has a slope."""
+    record = run_chain(6, 54.0, Trajectory("sine", 15.0, 10.0), sample_rate=SAMPLE_RATE)
+    return fit_gradient([record], steepest=GATE_STEEPNESS, polish=False).p
+
+
+def withheld(case: str) -> Withheld:
+    """One of the cases "slack" (above 2 r T_s one tendon is loose), "pretension_loss" (true pretension 0.8 of the
+    reading) and "presliding" (superposed torques, whose partial reversals only stretch the cable).
+
+    Raises ParameterError for another name. Source: S3 sec. 6."""
+    if case not in _CASES:
+        raise ParameterError(f"case = {case!r}: {nearest(case, list(_CASES))}")
+    return _CASES[case]()
+
+
+def _runs(
+    runs: Sequence[tuple[int, float, str, float, float]],
+    *,
+    seed: int,
+    slack: bool = False,
+    pretension_scale: float = 1.0,
+) -> tuple[Record, ...]:
+    """A record for each (shape, reading in kg, kind, amplitude in N·m, period in s)."""
+    return tuple(
+        run_chain(
+            number,
+            reading,
+            Trajectory(kind, amplitude, period),
+            seed=seed + k,
+            slack=slack,
+            pretension_scale=pretension_scale,
+            sample_rate=SAMPLE_RATE,
+        )
+        for k, (number, reading, kind, amplitude, period) in enumerate(runs)
+    )
+
+
+def _slack() -> Withheld:
+    """Peak torques of 1.3 to 1.6 times what the pretension holds, and one run below."""
+    fitted = [(6, 30.0, "sine", 22.0, 10.0), (6, 30.0, "sine", 12.0, 10.0), (4, 30.0, "sine", 22.0, 7.0)]
+    fitted += [(6, 40.0, "sine", 26.0, 10.0), (8, 30.0, "sine", 22.0, 10.0)]
+    judged = [(6, 30.0, "sine", 22.0, 10.0), (5, 35.0, "sine", 24.0, 10.0)]
+    return Withheld(
+        effect="sheath:slack",
+        told="friction grows with the torque above 2 r T_s",
+        records=_runs(fitted, seed=1, slack=True),
+        held_out=_runs(judged, seed=11, slack=True),
+    )
+
+
+def _pretension_loss() -> Withheld:
+    """The friction coefficient counts as known: a smaller one would look nearly the same."""
+    fitted = [(6, 30.0, "sine", 15.0, 10.0), (4, 40.0, "sine", 12.0, 10.0), (6, 54.0, "sine", 15.0, 7.0)]
+    judged = [(6, 40.0, "sine", 15.0, 10.0), (3, 30.0, "sine", 12.0, 10.0)]
+    return Withheld(
+        effect="sheath:pretension_loss",
+        told="true pretension 0.8 of the reading",
+        records=_runs([*fitted, (8, 30.0, "sine", 15.0, 10.0)], seed=21, pretension_scale=0.8),
+        held_out=_runs(judged, seed=31, pretension_scale=0.8),
+        uncertain=0.0,
+    )
+
+
+def _presliding() -> Withheld:
+    fitted = [(6, 54.0), (3, 54.0), (8, 54.0), (6, 40.0)]
+    judged = [(5, 54.0), (7, 54.0)]
+    return Withheld(
+        effect="sheath:distributed_presliding",
+        told="the cable stretches from its input on before its far end moves",
+        records=_runs([(n, kg, "superposed", 15.0, 10.0) for n, kg in fitted], seed=41),
+        held_out=_runs([(n, kg, "superposed", 15.0, 10.0) for n, kg in judged], seed=51),
+    )
+
+
+_CASES: dict[str, Callable[[], Withheld]] = {
+    "slack": _slack, "pretension_loss": _pretension_loss, "presliding": _presliding,
+}  # fmt: skip
+
+
+def rms_errors(records: Sequence[Record], predictions: Sequence[np.ndarray]) -> list[float]:
+    """Root mean square error of each record's output torque, N·m."""
+    return [
+        float(np.sqrt(np.mean((record.log["tau_out"].to_numpy() - predicted) ** 2)))
+        for record, predicted in zip(records, predictions, strict=True)
+    ]

@@ -1,0 +1,52 @@
+"""How a sheath lies: the angle that it has turned by at each arc length (S3 eq. 4, 5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tendonlab.errors import ParameterError
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A sheath from the drive (s = 0) to the load: `arc_length` s, m, and `turning` phi(s), rad, both (n,), from 0.
+
+    Raises ParameterError unless s increases and phi does not decrease."""
+
+    arc_length: np.ndarray = field(repr=False)
+    turning: np.ndarray = field(repr=False)
+
+    def __post_init__(self) -> None:
+        s, phi = (np.ascontiguousarray(values, dtype=float) for values in (self.arc_length, self.turning))
+        object.__setattr__(self, "arc_length", s)
+        object.__setattr__(self, "turning", phi)
+        if s.shape != phi.shape or s.ndim != 1 or len(s) < 2 or s[0] != 0.0 or phi[0] != 0.0:
+            raise ParameterError(f"arc_length {s.shape}, turning {phi.shape}: expected equal lengths >= 2, both from 0")
+        if not (np.all(np.diff(s) > 0) and np.all(np.diff(phi) >= 0)):
+            raise ParameterError("arc_length must increase and turning must not decrease along the sheath")
+
+    @property
+    def length(self) -> float:
+        """L, m."""
+        return float(self.arc_length[-1])
+
+    @property
+    def wrap_angle(self) -> float:
+        """theta, rad."""
+        return float(self.turning[-1])
+
+    @classmethod
+    def even(cls, wrap_angle: float, *, length: float, num_samples: int = 501) -> Shape:
+        """Constant curvature over the whole `length`, m."""
+        u = np.linspace(0.0, 1.0, num_samples)
+        return cls(length * u, wrap_angle * u)
+
+    @classmethod
+    def skewed(cls, wrap_angle: float, *, length: float, skew: float, num_samples: int = 501) -> Shape:
+        """Curvature that changes linearly along the sheath, theta/L (1 + skew (2 s/L - 1)); `skew` in [-1, 1]."""
+        if not -1.0 <= skew <= 1.0:
+            raise ParameterError(f"skew = {skew}: expected a value in [-1, 1]")
+        u = np.linspace(0.0, 1.0, num_samples)
+        return cls(length * u, wrap_angle * ((1.0 - skew) * u + skew * u**2))
