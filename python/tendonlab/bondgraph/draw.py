@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Place = tuple[float, float]
+_SIZE = 9.0  # of letters, points
 
 
 def draw(
@@ -35,57 +36,70 @@ def draw(
     for element in graph.elements:
         if element.name not in places:
             raise ParameterError(f"at: no place for {element.name!r}; expected one for every element")
+    inches = _scale(ax, np.array([places[e.name] for e in graph.elements]))
     found = causality(graph) if strokes else None
-    xy = np.array([places[e.name] for e in graph.elements])
     for bond in graph.bonds:
-        _draw_bond(ax, bond, graph, places, found)
+        _draw_bond(ax, bond, graph, places, found, inches)
     for element in graph.elements:
-        _write(ax, element, places[element.name])
-    ax.set(aspect="equal", xlim=(xy[:, 0].min() - 0.6, xy[:, 0].max() + 0.6))
-    ax.set_ylim(xy[:, 1].min() - 0.45, xy[:, 1].max() + 0.45)
-    ax.axis("off")
+        _write(ax, element, places[element.name], inches)
     return ax
 
 
-def _write(ax: Axes, element: Element, place: np.ndarray) -> None:
+def _scale(ax: Axes, xy: np.ndarray) -> float:
+    """Sets the limits of `ax` around the places; inches a unit of length, so that letters and bonds keep clear."""
+    margin = np.array([0.75, 0.5])
+    low, high = xy.min(axis=0) - margin, xy.max(axis=0) + margin
+    ax.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    ax.axis("off")
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()  # layouts move axes
+    box = ax.get_window_extent()
+    return float(min(box.width / (high[0] - low[0]), box.height / (high[1] - low[1])) / figure.dpi)
+
+
+def _write(ax: Axes, element: Element, place: np.ndarray, inches: float) -> None:
     is_junction = isinstance(element, Junction)
     weight = "bold" if is_junction else "normal"
-    ax.text(
-        place[0], place[1], element.text, ha="center", va="center", fontsize=9, color=INK, fontweight=weight, zorder=3
-    )
+    x, y = place
+    ax.text(x, y, element.text, ha="center", va="center", fontsize=_SIZE, color=INK, fontweight=weight, zorder=3)
     if is_junction and element.label:
-        ax.text(place[0] + 0.07, place[1] - 0.06, element.label, ha="left", va="top", fontsize=8, color=MUTED, zorder=3)
+        aside = 0.1 / inches
+        ax.text(x + aside, y - aside, element.label, ha="left", va="top", fontsize=_SIZE - 1, color=MUTED, zorder=3)
 
 
 def _clearance(element: Element, direction: np.ndarray) -> float:
-    """How far from the middle of its text a bond ends: the edge of the box of its letters."""
-    shown = element.text.replace("$", "").replace("\\", "").replace("_", "").replace("{", "").replace("}", "")
-    half = np.array([0.07 + 0.037 * len(shown), 0.13])
+    """How far from the middle of its text a bond ends, inch: the edge of its letters, a circle round a junction."""
+    from matplotlib.textpath import TextPath
+
+    if isinstance(element, Junction):
+        return 0.13
+    letters = TextPath((0.0, 0.0), element.text, size=_SIZE).get_extents()
+    half = np.array([letters.width / 2.0 + 4.5, 9.0]) / 72.0
     with np.errstate(divide="ignore"):
         return float(np.min(half / np.abs(direction)))
 
 
 def _draw_bond(
-    ax: Axes, bond: Bond, graph: BondGraph, places: Mapping[str, np.ndarray], found: Causality | None
+    ax: Axes, bond: Bond, graph: BondGraph, places: Mapping[str, np.ndarray], found: Causality | None, inches: float
 ) -> None:
     start, end = places[bond.tail], places[bond.head]
     along = (end - start) / np.linalg.norm(end - start)
     across = np.array([-along[1], along[0]])
-    start = start + along * _clearance(graph.by_name[bond.tail], along)
-    end = end - along * _clearance(graph.by_name[bond.head], along)
+    start = start + along * _clearance(graph.by_name[bond.tail], along) / inches
+    end = end - along * _clearance(graph.by_name[bond.head], along) / inches
+    barb = end + (-0.09 * along + 0.055 * across) / inches
     ax.plot(*np.stack([start, end]).T, color=INK, lw=0.9, solid_capstyle="butt", zorder=2)
-    barb = end - 0.11 * along + 0.07 * across
     ax.plot(*np.stack([end, barb]).T, color=INK, lw=0.9, zorder=2)
     if found is not None:
-        stroke = found.stroke[bond]
-        middle = end if stroke == bond.head else start
-        tied = bond.ends & set(found.dependent)
-        colour = COLOURS["with_effect"] if tied else COLOURS["refitted"]
-        ax.plot(*np.stack([middle - 0.08 * across, middle + 0.08 * across]).T, color=colour, lw=1.8, zorder=2)
+        middle = end if found.stroke[bond] == bond.head else start
+        colour = COLOURS["with_effect"] if bond.ends & set(found.dependent) else COLOURS["refitted"]
+        bar = 0.065 * across / inches
+        ax.plot(*np.stack([middle - bar, middle + bar]).T, color=colour, lw=1.8, zorder=2)
 
 
 def _spread(graph: BondGraph) -> dict[str, np.ndarray]:
-    """Places that keep the distances along bonds as well as a plane can (classical scaling)."""
+    """Places that keep the distances along bonds as well as a plane can (stress majorisation)."""
     names = [e.name for e in graph.elements]
     index = {name: i for i, name in enumerate(names)}
     far = np.full((len(names), len(names)), float(len(names)))
@@ -95,7 +109,10 @@ def _spread(graph: BondGraph) -> dict[str, np.ndarray]:
         far[i, j] = far[j, i] = 1.0
     for k in range(len(names)):
         far = np.minimum(far, far[:, k, None] + far[None, k, :])
-    centre = np.eye(len(names)) - 1.0 / len(names)
-    values, vectors = np.linalg.eigh(-0.5 * centre @ far**2 @ centre)
-    xy = vectors[:, -2:][:, ::-1] * np.sqrt(np.maximum(values[-2:][::-1], 0.0))
+    xy = np.random.default_rng(0).normal(size=(len(names), 2))  # breaks symmetry, always in the same way
+    for _ in range(300):
+        apart = np.linalg.norm(xy[:, None] - xy[None, :], axis=2)
+        pull = -np.divide(far, apart, out=np.zeros_like(far), where=apart > 0)
+        np.fill_diagonal(pull, -pull.sum(axis=1))
+        xy = pull @ xy / len(names)
     return {name: xy[i] for name, i in index.items()}

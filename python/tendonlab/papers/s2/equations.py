@@ -5,6 +5,8 @@ Signs: omega > 0 pulls cable 1, releases cable 2 and drives theta > 0. Elongatio
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -96,3 +98,23 @@ def joint_rate(
 def holding_difference(of: Constants, theta: ArrayLike) -> Array:
     """F_r,1 - F_r,2 that holds the joint still at theta, N."""
     return -gravity_torque(of, theta) / (of.r * np.cos(theta))
+
+
+def bushing_force(branches: Mapping[str, float], theta: ArrayLike, velocity: ArrayLike, tension: float) -> Array:
+    """Force of a cable in its bushing at joint angle theta, rad, N: four branches (S2 eq. 11).
+
+    `branches`: a1, a2, N, b11 … b22, 1, c1, c2, rad; `velocity`: its sign chooses, 0 counts as backwards; `tension` of
+    the cable, N. Contains what changes with theta alone as well as friction: see `split_common_friction`."""
+    forward = np.asarray(velocity) > 0
+    sides = []
+    for i in (1, 2):
+        away = np.asarray(theta) - branches[f"c{i}"]
+        slope = np.where(away >= 0, branches[f"b{i}1"], branches[f"b{i}2"])
+        sides.append(branches[f"a{i}"] + slope * tension * np.sin(0.5 * away))
+    return np.where(forward, sides[0], sides[1])
+
+
+def bushing_reaction(tension: ArrayLike, theta: ArrayLike) -> Array:
+    """Reaction of the bushing on a cable that turns by theta, N, last axis (x, y) (S2 eq. 8)."""
+    force = np.asarray(tension)
+    return np.stack([force * (1.0 - np.cos(theta)), -force * np.sin(theta)], axis=-1)

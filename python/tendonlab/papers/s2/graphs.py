@@ -132,7 +132,7 @@ def _joint(of: Constants) -> Parts:
 
 MOTOR_PLACES: dict[str, Place] = {
     "V": (0, 0), "current": (1, 0), "x_1": (1, 1), "R_m": (1, -1), "k_m": (2, 0), "motor": (3, 0), "x_2": (3, 1),
-    "c_m": (2.6, -1), "tau_f": (3.4, -1), "N_g": (4, 0), "N_s": (5, 0), "nut": (6, 0),
+    "c_m": (2.55, -1), "tau_f": (3.45, -1), "N_g": (4, 0), "N_s": (5, 0), "nut": (6, 0),
 }  # fmt: skip
 CABLE_PLACES: dict[str, Place] = {
     "v_a": (0, 0), "force": (1.2, 0), "v_j": (2.4, 0), "stretch": (1.2, 1), "x_4": (0.4, 1.8), "c": (2.0, 1.8),
