@@ -104,7 +104,7 @@ def run(
     return Run(
         outputs=dict(zip([s.name for s in info.outputs], done["outputs"], strict=True)),
         gradient=dict(zip(by, done["gradient"], strict=True)) if by else {},
-        ports=dict(zip(info.ports, done["ports"], strict=True)) if ports else {},
+        ports=dict(zip([p.name for p in info.ports], done["ports"], strict=True)) if ports else {},
         attempts=done["attempts"],
         rejected=done["rejected"],
         events=done["events"],
