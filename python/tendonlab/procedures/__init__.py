@@ -1,0 +1,39 @@
+"""What the papers do to their logs before anything is fitted, as functions for one's own logs.
+
+Arrays in, arrays or frames out; SI units, time in s. Bad input raises ParameterError."""
+
+from tendonlab.procedures.correlation import correlation_shift
+from tendonlab.procedures.denoise import universal_threshold, wavelet_denoise
+from tendonlab.procedures.differentiate import velocity
+from tendonlab.procedures.filtering import lowpass
+from tendonlab.procedures.jumps import jumps, time_shift
+from tendonlab.procedures.load_cells import LoadCell, pretension_from_load_cells, reactive_torque
+from tendonlab.procedures.maps import MapPoint, friction_map, map_point
+from tendonlab.procedures.partition import split
+from tendonlab.procedures.plateaus import steady_averages
+from tendonlab.procedures.reversal import reversal_mask, reversals
+from tendonlab.procedures.search import SearchResult, global_search
+from tendonlab.procedures.steady import steady_segment
+
+__all__ = [
+    "LoadCell",
+    "MapPoint",
+    "SearchResult",
+    "correlation_shift",
+    "friction_map",
+    "global_search",
+    "jumps",
+    "lowpass",
+    "map_point",
+    "pretension_from_load_cells",
+    "reactive_torque",
+    "reversal_mask",
+    "reversals",
+    "split",
+    "steady_averages",
+    "steady_segment",
+    "time_shift",
+    "universal_threshold",
+    "velocity",
+    "wavelet_denoise",
+]

@@ -1,0 +1,101 @@
+"""Checks of what a procedure is given: each names the argument, its value and what was expected."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tendonlab.catalog import nearest
+from tendonlab.errors import ParameterError
+
+JITTER = 0.01  # share of the sampling interval by which intervals may differ and still count as even
+
+
+def samples(name: str, values: ArrayLike, *, fewest: int = 1) -> np.ndarray:
+    """`values` as a row of finite floats, at least `fewest` of them."""
+    try:
+        row = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{name} holds what is no number: expected a row of numbers ({error})") from error
+    if row.ndim != 1:
+        raise ParameterError(f"{name} has shape {row.shape}: expected one row of samples")
+    if len(row) < fewest:
+        raise ParameterError(f"{name} has {len(row)} samples: expected at least {fewest}")
+    broken = np.flatnonzero(~np.isfinite(row))
+    if broken.size:
+        raise ParameterError(f"{name}[{broken[0]}] = {row[broken[0]]}: expected a finite number")
+    return row
+
+
+def times(time: ArrayLike, *, fewest: int = 2) -> np.ndarray:
+    """Sampling times, s, that increase."""
+    row = samples("time", time, fewest=fewest)
+    back = np.flatnonzero(np.diff(row) <= 0.0)
+    if back.size:
+        k = back[0] + 1
+        raise ParameterError(f"time[{k}] = {row[k]} s after {row[k - 1]} s: expected time to increase")
+    return row
+
+
+def along(time: np.ndarray, name: str, values: ArrayLike) -> np.ndarray:
+    """Samples of a signal, one for each sampling time."""
+    row = samples(name, values)
+    if len(row) != len(time):
+        raise ParameterError(f"{name} has {len(row)} samples: expected {len(time)}, as many as time")
+    return row
+
+
+def interval(time: np.ndarray) -> float:
+    """The sampling interval, s, of times that are evenly spaced."""
+    steps = np.diff(time)
+    mean = float(time[-1] - time[0]) / len(steps)
+    uneven = np.flatnonzero(np.abs(steps - mean) > JITTER * mean)
+    if uneven.size:
+        k = uneven[0]
+        raise ParameterError(
+            f"time[{k + 1}] - time[{k}] = {steps[k]:.6g} s: expected even sampling, {mean:.6g} s within 1 %; "
+            "resample the record first"
+        )
+    return mean
+
+
+def within(
+    name: str,
+    value: float,
+    lower: float,
+    upper: float,
+    unit: str = "",
+    *,
+    open_lower: bool = False,
+    open_upper: bool = False,
+) -> float:
+    """A finite number between two bounds, either of which may be excluded."""
+    number = float(value)
+    inside = (lower < number if open_lower else lower <= number) and (number < upper if open_upper else number <= upper)
+    if math.isfinite(number) and inside:
+        return number
+    left, right = "(" if open_lower or math.isinf(lower) else "[", ")" if open_upper or math.isinf(upper) else "]"
+    expected = f"a value in {left}{lower:g}, {upper:g}{right} {unit}".rstrip()
+    raise ParameterError(f"{name} = {value}: expected {expected}")
+
+
+def positive(name: str, value: float, unit: str = "") -> float:
+    """A finite number above zero."""
+    return within(name, value, 0.0, math.inf, unit, open_lower=True)
+
+
+def whole(name: str, value: int, lower: int) -> int:
+    """A whole number of at least `lower`."""
+    if isinstance(value, bool) or int(value) != value or value < lower:
+        raise ParameterError(f"{name} = {value}: expected a whole number of at least {lower}")
+    return int(value)
+
+
+def choice(name: str, value: str, known: Sequence[str]) -> str:
+    """One of the known words."""
+    if value not in known:
+        raise ParameterError(f"{name} = {value!r}: {nearest(value, tuple(known))}")
+    return value

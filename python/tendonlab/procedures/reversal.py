@@ -1,0 +1,62 @@
+"""Where a motion turns round, and what to leave out about it (S4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tendonlab.errors import ParameterError
+from tendonlab.procedures.check import along, times, within
+
+REST = 0.01  # share of the greatest speed that counts as rest: what noise crosses there is no reversal
+
+
+def reversals(time: ArrayLike, velocity: ArrayLike, *, rest: float = REST) -> np.ndarray:
+    """Times, s, at which the velocity changes its sign, by straight lines between samples; the middle of a dwell.
+
+    `time`, s, and `velocity`, shapes (n,); uneven sampling is fine. Speeds up to a share `rest` of the greatest count
+    as standing still: a dwell between motions of one sense is no reversal, whatever noise does in it.
+
+    Raises ParameterError: unequal lengths, time that runs back, `rest` not in [0, 1)."""
+    t = times(time)
+    return np.asarray(_spans(t, along(t, "velocity", velocity), rest).mean(axis=1))
+
+
+def reversal_mask(
+    time: ArrayLike, velocity: ArrayLike, *, share: float = 0.4, around: float = 0.25, rest: float = REST
+) -> np.ndarray:
+    """True, shape (n,), for samples to keep: |velocity| at least `share` of its maximum, and no reversal (nor dwell
+    that holds one) within `around` s.
+
+    There a friction coefficient from a ratio of tensions is undefined (presliding). `rest` as in `reversals`. Source:
+    S4 section 5 (0.4 and 0.25 s).
+
+    Raises ParameterError: unequal lengths, time that runs back, a velocity of 0 throughout, `share` not in [0, 1),
+    `around` below 0."""
+    within("share", share, 0.0, 1.0, open_upper=True)
+    within("around", around, 0.0, np.inf, "s")
+    t = times(time)
+    v = along(t, "velocity", velocity)
+    if not v.any():
+        raise ParameterError("velocity = 0 throughout: expected a motion")
+    keep = np.abs(v) >= share * np.max(np.abs(v))
+    for begin, end in _spans(t, v, rest):
+        keep &= (t < begin - around) | (t > end + around)
+    return np.asarray(keep)
+
+
+def _spans(time: np.ndarray, velocity: np.ndarray, rest: float) -> np.ndarray:
+    """First and last zero of the velocity at each reversal, shape (reversals, 2); the same where it just crosses."""
+    within("rest", rest, 0.0, 1.0, open_upper=True)
+    moving = np.flatnonzero(np.abs(velocity) > rest * np.max(np.abs(velocity)))
+    turns = np.flatnonzero(np.diff(np.sign(velocity[moving])))
+    spans = [_zeros(time, velocity, slice(moving[k], moving[k + 1] + 1)) for k in turns]
+    return np.array(spans, dtype=float).reshape(-1, 2)
+
+
+def _zeros(time: np.ndarray, velocity: np.ndarray, part: slice) -> tuple[float, float]:
+    t, v = time[part], velocity[part]
+    crossed = np.flatnonzero(np.sign(v[:-1]) * np.sign(v[1:]) < 0.0)
+    roots = t[crossed] - v[crossed] * (t[crossed + 1] - t[crossed]) / (v[crossed + 1] - v[crossed])
+    zeros = np.concatenate([roots, t[v == 0.0]])
+    return float(zeros.min()), float(zeros.max())
