@@ -271,10 +271,13 @@ void bind_group(py::module_& module, const char* group, const char* doc, py::lis
 
 void bind_laws(py::module_& module) {
   py::list registered;
-  bind_group<friction::All>(module, "friction", "Friction laws.", registered);
-  bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
+  using Friction = Joined<friction::All, friction::Bushing, friction::Gear>::type;
+  using Transmission = Joined<transmission::All, transmission::Pull>::type;
+  using Actuation = Joined<actuation::All, actuation::Motor>::type;
+  bind_group<Friction>(module, "friction", "Friction laws.", registered);
+  bind_group<Transmission>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
   bind_group<loading::All>(module, "loading", "Laws of what acts on the joint from outside.", registered);
-  bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
+  bind_group<Actuation>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
   module.def(
       "units",

@@ -32,7 +32,8 @@ inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
                                                      {"resistance", "ohm", "ohm"},
                                                      {"inductance", "H", "H"},
                                                      {"torque_per_current", "N*m/A", "N*m/A"},
-                                                     {"acceleration", "m/s^2", "m/s^2"}};
+                                                     {"acceleration", "m/s^2", "m/s^2"},
+                                                     {"inverse_flow", "s/rad", "s/m"}};
 inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape"};
 
 inline const DimensionWords& words(Dimension dimension) {

@@ -12,7 +12,15 @@ struct Sliding {
   S wrap{};                          ///< wrap angle of the cable on its contact, rad
   S speed() const { return direction * velocity; }  ///< |v|, continued smoothly past zero
 };
-enum Sees : unsigned { sees_nothing = 0, sees_velocity = 1, sees_position = 2, sees_load = 4, sees_wrap = 8 };
+/// sees_direction: the sense of sliding matters although the law makes no dry friction of its own.
+enum Sees : unsigned {
+  sees_nothing = 0,
+  sees_velocity = 1,
+  sees_position = 2,
+  sees_load = 4,
+  sees_wrap = 8,
+  sees_direction = 16
+};
 
 /// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
 /// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of

@@ -37,7 +37,8 @@ enum class Dimension {
   resistance,
   inductance,
   torque_per_current,
-  acceleration
+  acceleration,
+  inverse_flow
 };
 enum class Purpose {
   structure,  ///< of the system itself

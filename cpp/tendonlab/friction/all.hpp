@@ -1,5 +1,9 @@
 #pragma once
+#include "tendonlab/friction/arctan.hpp"
 #include "tendonlab/friction/asymmetry.hpp"
+#include "tendonlab/friction/bushing_branches.hpp"
+#include "tendonlab/friction/bushing_capstan.hpp"
+#include "tendonlab/friction/bushing_sine.hpp"
 #include "tendonlab/friction/coulomb.hpp"
 #include "tendonlab/friction/load_dependence.hpp"
 #include "tendonlab/friction/presliding.hpp"
@@ -8,4 +12,8 @@
 
 namespace tendonlab::friction {
 using All = Laws<Coulomb, Viscous, Stribeck, Presliding, LoadDependence, Asymmetry>;
-}
+/// Of a cable that bends in a bushing.
+using Bushing = Laws<BushingBranches, BushingSine, BushingCapstan>;
+/// Of gears.
+using Gear = Laws<Arctan>;
+}  // namespace tendonlab::friction

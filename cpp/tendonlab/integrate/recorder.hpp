@@ -74,7 +74,12 @@ class Recorder {
   }
   template <class Coupling>
   auto observe(const Y& y, Coupling& coupling) const {
-    return system.observe(y.at, [&](auto i) { return force<i>(y, coupling()); });
+    const auto acts = [&](auto i) { return force<i>(y, coupling()); };
+    const auto port = [&](auto i) -> const Sliding<T>& { return coupling().port[i]; };
+    if constexpr (systems::observes_ports<System, T, decltype(acts), decltype(port)>)
+      return system.observe(y.at, acts, port);
+    else
+      return system.observe(y.at, acts);
   }
   void write(std::size_t channel, std::size_t sample, const T& value) {
     out.value[channel * time.size() + sample] = plain(value);

@@ -88,6 +88,7 @@ class Simulation {
 
   void start() {
     y.at.time = T(t);
+    if constexpr (systems::stated<System> < n) system.begin(y.at, drive);
     std::array<bool, num_modes> resting{};
     for (int m = 0; m < num_modes; ++m) {
       const auto i = static_cast<std::size_t>(m);

@@ -23,7 +23,7 @@ SystemInfo describe() {
   using System = Of<double>;
   System system{};
   SystemInfo info{};
-  info.kind = System::name, info.equation = System::equation, info.dof = System::dof;
+  info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
   info.commanded = System::commanded, info.sampled = systems::sampled<System>;
   for (const auto& s : System::inputs)
     info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1,
@@ -131,21 +131,21 @@ class ModelOf final : public Model {
   /// What was made for another system, or asks for what this one has not, must not reach the stepper.
   void require_matching(const integrate::Experiment& experiment, const Seeds& seeds) const {
     using System = Of<double>;
+    constexpr auto stated = static_cast<std::size_t>(systems::stated<System>);
     const auto index = [](std::string_view of, std::size_t value, std::size_t count) {
       if (value >= count)
         throw ParameterError(sentence(of, " ", static_cast<long>(value), ": ", System::name, " has ", count));
     };
-    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != System::dof)
+    if (experiment.inputs.size() != System::inputs.size() || experiment.position.size() != stated)
       throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ",
                                     experiment.position.size(), " positions: ", System::name, " expects ",
-                                    System::inputs.size(), " and ", System::dof));
-    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
+                                    System::inputs.size(), " and ", stated));
+    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), stated);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
             static_cast<std::size_t>(seed.index),
-            seed.of == integrate::Seed::Of::parameter ? description.parameters.size()
-                                                      : static_cast<std::size_t>(System::dof));
+            seed.of == integrate::Seed::Of::parameter ? description.parameters.size() : stated);
   }
   template <class T>
   static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
@@ -170,7 +170,7 @@ class ModelOf final : public Model {
     integrate::Simulation<System, T> simulation(
         system, experiment, settings,
         integrate::Drive<T>(experiment, system.actuation.delay(), sensor.delay(), sensor.bias()));
-    for (std::size_t j = 0; j < static_cast<std::size_t>(System::dof); ++j) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(systems::stated<System>); ++j) {
       simulation.y.at.position[j] = T(experiment.position[j]);
       simulation.y.at.velocity[j] = T(experiment.velocity[j]);
     }

@@ -81,6 +81,24 @@ template <class System>
 struct RenamedOf<System, std::void_t<decltype(System::renamed)>> {
   static constexpr auto& list = System::renamed;
 };
+/// Do its outputs show what its ports see, beside what they do? Then `observe` also takes a function of a port.
+template <class System, class T, class Force, class Port, class = void>
+inline constexpr bool observes_ports = false;
+template <class System, class T, class Force, class Port>
+inline constexpr bool
+    observes_ports<System, T, Force, Port,
+                   std::void_t<decltype(std::declval<const System&>().observe(
+                       std::declval<const Motion<T, System::dof>&>(), std::declval<Force>(), std::declval<Port>()))>> =
+        true;
+
+template <class System, class = void>
+struct StatedOf : std::integral_constant<int, System::dof> {};
+template <class System>
+struct StatedOf<System, std::enable_if_t<(System::stated > 0)>> : std::integral_constant<int, System::stated> {};
+/// The degrees of freedom whose initial state an experiment states; `begin` of the system places those after them.
+template <class System>
+inline constexpr int stated = StatedOf<System>::value;
+
 template <class System>
 constexpr bool drives_a_port() {
   for (const auto& port : System::ports)
