@@ -34,7 +34,8 @@ inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
                                                      {"torque_per_current", "N*m/A", "N*m/A"},
                                                      {"acceleration", "m/s^2", "m/s^2"},
                                                      {"line_compliance", "m/N", "m/N"},
-                                                     {"per_flow_squared", "s^2/rad^2", "s^2/m^2"}};
+                                                     {"per_flow_squared", "s^2/rad^2", "s^2/m^2"},
+                                                     {"inverse_flow", "s/rad", "s/m"}};
 inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape", "condition"};
 
 inline const DimensionWords& words(Dimension dimension) {

@@ -14,13 +14,15 @@ struct Sliding {
   S skew{};                          ///< curvature at the output end of a sheath over its mean, less one
   S speed() const { return direction * velocity; }  ///< |v|, continued smoothly past zero
 };
+/// sees_direction: the sense of sliding matters although the law makes no dry friction of its own.
 enum Sees : unsigned {
   sees_nothing = 0,
   sees_velocity = 1,
   sees_position = 2,
   sees_load = 4,
   sees_wrap = 8,
-  sees_preload = 16
+  sees_preload = 16,
+  sees_direction = 32
 };
 
 /// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to

@@ -39,7 +39,8 @@ enum class Dimension {
   torque_per_current,
   acceleration,
   line_compliance,
-  per_flow_squared
+  per_flow_squared,
+  inverse_flow
 };
 enum class Purpose {
   structure,  ///< of the system itself

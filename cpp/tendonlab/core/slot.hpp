@@ -52,7 +52,13 @@ struct Slot {
     return found;
   }
   /// Does any active law ask for the direction of sliding?
-  bool directed() const { return has(role::level | role::factor | role::memory); }
+  bool directed() const {
+    bool asks = has(role::level | role::factor | role::memory);
+    each_index(std::make_index_sequence<size>{}, [&](auto i) {
+      asks = asks || ((std::tuple_element_t<i, Laws>::sees & sees_direction) != 0 && (active >> i & 1u));
+    });
+    return asks;
+  }
 
   /// Dry friction level, a magnitude, at the given sliding.
   template <class S>

@@ -1,5 +1,6 @@
 #pragma once
 #include "tendonlab/systems/bowden_pair.hpp"
+#include "tendonlab/systems/cable_joint.hpp"
 #include "tendonlab/systems/ccsrm.hpp"
 #include "tendonlab/systems/friction_map.hpp"
 #include "tendonlab/systems/rigid_joint.hpp"
@@ -7,5 +8,5 @@
 #include "tendonlab/systems/two_inertia.hpp"
 
 namespace tendonlab::systems {
-using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting, BowdenPair, Ccsrm>;
+using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting, CableJoint, BowdenPair, Ccsrm>;
 }

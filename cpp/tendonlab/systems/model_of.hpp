@@ -34,7 +34,7 @@ SystemInfo describe() {
   using System = Of<double>;
   System system{};
   SystemInfo info{};
-  info.kind = System::name, info.equation = System::equation, info.dof = System::dof;
+  info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
   info.commanded = System::commanded, info.sampled = systems::sampled<System>;
   for (const auto& s : System::inputs)
     info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1,

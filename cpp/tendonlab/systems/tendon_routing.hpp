@@ -54,7 +54,7 @@ struct TendonRouting : tendon::Entries<T> {
   static constexpr std::array<std::string_view, 2> nominal{"cable:coulomb", "cable:viscous"};
 
   using Cable = Slot<T, friction::All>;
-  using Gear = Slot<T, friction::Gears>;
+  using Gear = Slot<T, Laws<friction::Efficiency>>;
   std::tuple<Cable, Cable, Cable, Cable, Cable, Cable, Cable, Cable, Cable, Cable, Gear, Gear, Gear, Gear> slot;
   Chain<T, loading::Known> load;
   Chain<T, Laws<>> actuation;

@@ -1,0 +1,131 @@
+"""The twin of S2: cables and joint behind nuts whose motion is prescribed, by the linearly implicit step of the sheet.
+
+It shares no law and no stepper with the library. The gaps that the paper names are switches: velocity ripple of the
+gear, and stiction that holds the sense of bushing friction at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from tendonlab.errors import ParameterError
+from tendonlab.papers.s2 import equations
+from tendonlab.papers.s2.constants import Constants
+from tendonlab.papers.s2.equations import Array
+from tendonlab.papers.s2.reference import Reference
+
+Sense = Literal["instantaneous", "hold", "reference", "smooth"]
+SENSES: tuple[Sense, ...] = ("instantaneous", "hold", "reference", "smooth")
+SMOOTH_SPEED = 1e-4  # m/s, over which "smooth" friction turns
+
+
+@dataclass(frozen=True, kw_only=True)
+class PID:
+    """Velocity of the nuts from the angle error: the reference's own, plus kp e + ki int e + kd e'. Gains in m/s per
+    rad, rad*s, rad/s; `limit` in m/s. Reconstructed: the paper gives no gains."""
+
+    kp: float = 0.5
+    ki: float = 0.5
+    kd: float = 0.0
+    limit: float = 0.02
+
+
+def simulate(
+    of: Constants,
+    reference: Reference,
+    *,
+    controller: PID | None = None,
+    ripple: float = 0.0,
+    sense: Sense = "instantaneous",
+    path_error: float = 0.0,
+) -> pd.DataFrame:
+    """Simulate the joint behind nuts that follow `reference`; a frame by time "t", s, SI.
+
+    `controller`: closes the loop on theta; without one the nuts move as the reference asks, r cos(theta) theta'.
+    `ripple`: u' -> u' (1 + ripple sin(2 pi u / p)) of the nuts. `sense`: what friction of the bushings follows, the
+    joint's velocity ("instantaneous"), the nuts' and at rest their last ("hold"), the reference's, held likewise
+    ("reference"), or the joint's over 1e-4 m/s ("smooth"). `path_error`: elastic path, m, that grows as 1 - cos(theta)
+    in both cables. Columns: theta, theta_rate, nut_rate, elongation, F_r_1, F_r_2, F_act_1, F_act_2. S2 eqs. 2 to 11.
+    Raises ParameterError for an unknown `sense`."""
+    if sense not in SENSES:
+        raise ParameterError(f"sense = {sense!r}: expected one of {', '.join(SENSES)}")
+    motion = pd.DataFrame(_steps(of, reference, controller, ripple), index=pd.Index(reference.time, name="t"))
+    return motion.join(_forces(of, motion, reference, sense, path_error))
+
+
+def _steps(of: Constants, reference: Reference, controller: PID | None, ripple: float) -> dict[str, Array]:
+    """Theta, its rate, common elongation e of cable 1 (that of cable 2 is -e), and its rate at every step."""
+    h = reference.step
+    fixed = float(equations.inertia(of, np.pi / 2.0))
+    swinging = float(equations.inertia(of, 0.0)) - fixed
+    wanted = (of.r * np.cos(reference.angle) * reference.velocity).tolist()
+    aims, aim_rates = reference.angle.tolist(), reference.velocity.tolist()
+    theta, rate, e = aims[0], 0.0, -float(equations.gravity_torque(of, aims[0])) / (2.0 * of.K * of.r * cos(aims[0]))
+    u = integral = stretch = 0.0
+    rows = []
+    for nut, aim, aim_rate in zip(wanted, aims, aim_rates, strict=True):
+        if controller is not None:
+            error = aim - theta
+            integral += h * error
+            nut += controller.kp * error + controller.ki * integral + controller.kd * (aim_rate - rate)
+            nut = min(max(nut, -controller.limit), controller.limit)
+        if ripple:
+            nut *= 1.0 + ripple * sin(2.0 * pi * u / of.p)
+        rows.append((theta, rate, nut, e, stretch))
+        arm = of.r * cos(theta)
+        inertia = fixed + swinging * cos(theta)
+        one, two = cos(theta + of.phi), cos(2.0 * theta + of.phi)
+        gravity = -of.g * (of.m_1 * of.d_11 * one + of.m_2 * (of.l_1 * one + 2.0 * of.d_21 * two))
+        pull = 2.0 * arm * (of.K * (e + h * nut) + of.c * nut)
+        whirl = 2.0 * of.m_2 * of.l_1 * of.d_21 * sin(theta) * rate * rate
+        rate = (inertia * rate + h * (pull + gravity + whirl)) / (inertia + 2.0 * h * arm * arm * (h * of.K + of.c))
+        stretch = nut - arm * rate
+        e, theta, u = e + h * stretch, theta + h * rate, u + h * nut
+    names = ("theta", "theta_rate", "nut_rate", "elongation", "elongation_rate")
+    return dict(zip(names, np.array(rows).T, strict=True))
+
+
+def _forces(of: Constants, motion: pd.DataFrame, reference: Reference, sense: Sense, path_error: float) -> pd.DataFrame:
+    theta = motion["theta"].to_numpy()
+    e, rate = motion["elongation"].to_numpy(), motion["elongation_rate"].to_numpy()
+    path = path_error * (1.0 - np.cos(theta))
+    velocity = of.r * np.cos(theta) * motion["theta_rate"].to_numpy()
+    followed = {"hold": motion["nut_rate"].to_numpy(), "reference": reference.velocity}.get(sense, velocity)
+    found = {}
+    for i, sign in enumerate((1.0, -1.0)):
+        carried = equations.cable_force(of, sign * e + path, sign * rate)
+        if sense == "smooth":
+            forward, backward = (equations.bushing_force(of.bushings[i], theta, s, of.T) for s in (1.0, -1.0))
+            share = np.tanh(velocity / SMOOTH_SPEED)
+            friction = 0.5 * (forward + backward) + 0.5 * (forward - backward) * share
+        else:
+            friction = equations.bushing_force(of.bushings[i], theta, last_sense(followed), of.T)
+        found |= {f"F_r_{i + 1}": carried, f"F_act_{i + 1}": carried + friction}
+    return pd.DataFrame(found, index=motion.index)
+
+
+def last_sense(velocity: Array) -> Array:
+    """Sign of a velocity, at rest that of the motion before; +1 before any motion. Shape of `velocity`, (n,)."""
+    sign = np.sign(velocity)
+    latest = np.maximum.accumulate(np.where(sign != 0, np.arange(len(sign)), -1))
+    return np.where(latest >= 0, sign[np.maximum(latest, 0)], 1.0)
+
+
+def measured(run: pd.DataFrame, *, seed: int | np.random.Generator = 0, quantize: float | None = None) -> pd.DataFrame:
+    """What the rig would log of a run: joint_angle (18 bit), joint_velocity, cable_force_1, cable_force_2 and the
+    drive's actuator_velocity is left to the caller. Noise sd: 2 mrad/s, 1.5 N; `quantize`: resolution of the forces, N
+    (5 on the rig). Reconstructed: the paper prints resolutions only (S2 sec. IV-A)."""
+    random = np.random.default_rng(seed)
+    bit = 2.0 * np.pi / 2**18
+    log = pd.DataFrame(index=run.index)
+    log["joint_angle"] = bit * np.round(run["theta"] / bit)
+    log["joint_velocity"] = run["theta_rate"] + 2e-3 * random.normal(size=len(run))
+    for i in (1, 2):
+        force = run[f"F_act_{i}"] + 1.5 * random.normal(size=len(run))
+        log[f"cable_force_{i}"] = force if quantize is None else quantize * np.round(force / quantize)
+    return log
