@@ -78,6 +78,7 @@ def test_its_output_is_the_law() -> None:
 def test_points_need_no_time_and_conditions_hold(tmp_path: Path) -> None:
     rig = tl.load(folder(tmp_path))
     assert rig["heavy"].conditions["relative_load"] == 3.7
+    assert not [told for told in rig.warnings if "relative_load" in told or "transmission_ratio" in told]
     exact = (
         rig.system()
         .with_parameters(
