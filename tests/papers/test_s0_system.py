@@ -7,6 +7,8 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab import _core, replay
+from tendonlab.data import Experiment
 from tendonlab.papers.s0 import bench, experiments, models, twin
 
 NAMES = {
@@ -76,6 +78,7 @@ def test_its_output_is_the_law() -> None:
 def test_points_need_no_time_and_conditions_hold(tmp_path: Path) -> None:
     rig = tl.load(folder(tmp_path))
     assert rig["heavy"].conditions["relative_load"] == 3.7
+    assert not [told for told in rig.warnings if "relative_load" in told or "transmission_ratio" in told]
     exact = (
         rig.system()
         .with_parameters(
@@ -115,6 +118,19 @@ def test_identify_finds_the_load_and_ratio_model_and_predicts_a_load_between(tmp
     error = found.system.simulate(middle)["friction_torque"] - middle.data["friction_torque"]
     assert np.sqrt(np.mean(error**2)) < 1e-3
     assert set(found.values) == NAMES
+
+
+def test_derivatives_are_finite_at_rest_and_in_the_fastest_run() -> None:
+    """Powers of a speed of 0 with exponents below 1: no NaN, and those of the exponents vanish there."""
+    system = experiments.proposed_system(models.reconstructed("C25P104GX"), ratio=4.16)
+    frame = pd.DataFrame({"speed": [0.0, 1e-300, -1e-12, 1.0, -105.0]}, index=pd.Index(np.arange(5.0), name="t"))
+    names = [p.name for p in system.info.parameters]
+    seeds = [("parameter", names.index(n)) for n in [*sorted(NAMES), "relative_load", "transmission_ratio"]]
+    ready = replay.prepare(Experiment(name="points", data=frame), system, replay.Replay("free"))
+    run = _core.simulate(system.kind, system.values(), system.active(), ready.core, seeds, _core.Settings())
+    assert np.all(np.isfinite(run["gradient"]))
+    assert np.all(run["gradient"][:, 0, 0] == 0.0)
+    assert np.all(run["gradient"][:, 0, 4] != 0.0)
 
 
 def test_a_load_that_is_not_positive_is_refused() -> None:

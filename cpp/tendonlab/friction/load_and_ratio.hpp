@@ -39,7 +39,7 @@ struct LoadAndRatio {
                       parameter(&LoadAndRatio::peak_exponent, "peak_exponent", Dimension::ratio, Purpose::shape, 1.0,
                                 -1.0, 6.0, "beta: growth of the peak at low speed with speed"),
                       parameter(&LoadAndRatio::stribeck_exponent, "stribeck_exponent", Dimension::ratio, Purpose::shape,
-                                2.0, 0.5, 10.0, "alpha: sharpness of the end of the peak at low speed; 2: Gaussian"),
+                                2.0, 0.1, 10.0, "alpha: sharpness of the end of the peak at low speed; 2: Gaussian"),
                       parameter(&LoadAndRatio::viscous_exponent, "viscous_exponent", Dimension::ratio, Purpose::shape,
                                 1.0, -1.0, 4.0, "gamma: growth of the part of viscous friction that falls with load"),
                       parameter(&LoadAndRatio::ratio, "transmission_ratio", Dimension::ratio, Purpose::condition, 1.0,

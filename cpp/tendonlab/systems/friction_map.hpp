@@ -11,7 +11,7 @@ namespace tendonlab::systems {
 /// model; a simulator that knows no load has `contact:static_lugre` and `contact:viscous` instead.
 template <class T>
 struct FrictionMap {
-  static constexpr std::string_view name = "friction_map", equation = "T = friction(speed; relative_load)";
+  static constexpr std::string_view name = "friction_map", equation = "T = friction(speed, relative_load)";
   static constexpr int dof = 0, directions = 0, sides = 0;
   static constexpr bool sampled = true, commanded = false, plain_names = true;
   static constexpr std::size_t carried = 0;

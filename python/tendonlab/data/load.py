@@ -46,7 +46,7 @@ def load(path: str | PathLike[str]) -> Dataset:
     command = signals.get("motor_torque")
     command_is_effort = command is None or command.si_unit == catalog.unit("effort", axis)
     warnings = [
-        *assumptions(top, parameters, command_is_effort=command_is_effort),
+        *assumptions(top, parameters, experiments, command_is_effort=command_is_effort),
         *_doubts(experiments, signals.values(), info=info),
         *_split_notes(experiments, given=split_is_given(top)),
     ]

@@ -1,10 +1,10 @@
 """The [system] tables: kind, axis, nominal effects and the simulator's parameters, checked against the catalog."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from tendonlab.catalog import Parameter, SystemInfo, kinds, system_info
-from tendonlab.data.dataset import NominalParameter
+from tendonlab.data.dataset import Experiment, NominalParameter
 from tendonlab.data.names import expected_one_of
 from tendonlab.data.schema import Table
 
@@ -49,15 +49,22 @@ def read_parameters(top: Table, info: SystemInfo, *, nominal_effects: tuple[str,
     return nominal
 
 
-def assumptions(top: Table, parameters: Mapping[str, NominalParameter], *, command_is_effort: bool) -> list[str]:
-    """A warning for every parameter without a value in the file; a `torque_constant` of 1 goes without saying where the
-    command is an effort."""
-    written = top.table("system").table("parameters", optional=True).values
-    silent = ("torque_constant",) if command_is_effort else ()
+def assumptions(
+    top: Table,
+    parameters: Mapping[str, NominalParameter],
+    experiments: Iterable[Experiment],
+    *,
+    command_is_effort: bool,
+) -> list[str]:
+    """A warning for every parameter without a value in the file, be it as a condition of every experiment; a
+    `torque_constant` of 1 goes without saying where the command is an effort."""
+    written = set(top.table("system").table("parameters", optional=True).values)
+    stated = set.intersection(*(set(experiment.conditions) for experiment in experiments))
+    silent = written | stated | ({"torque_constant"} if command_is_effort else set())
     return [
         f"{name}: no nominal value given; {parameter.value:g} is assumed" + (", exactly" if parameter.sd == 0.0 else "")
         for name, parameter in parameters.items()
-        if name not in written and name not in silent
+        if name not in silent
     ]
 
 
