@@ -138,7 +138,6 @@ def write_dataset(folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, 
     for name, value in nominal_device().parameters().items():
         uncertain = value > 0 and name.startswith(("constant_loss", "viscous_loss"))
         lines.append(f"{name} = {{ value = {value!r}, sd = {0.3 * value if uncertain else 0.0!r} }}")
-    lines += [f"{name} = {{ value = 0.0, sd = 0.0 }}" for name in ("cable_coulomb", "cable_viscous")]
     lines.append("[signals]")
     for name, unit in (("motor_velocity", "rad/s"), ("external_torque", "N*m"), ("motor_torque", "N*m")):
         lines += [f'{name}_{i} = {{ column = "{name}_{i}", unit = "{unit}" }}' for i in range(1, 5)]
