@@ -8,12 +8,14 @@ from tendonlab.data import Dataset, Experiment, load
 from tendonlab.diagnose import Diagnosis, diagnose
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identify import Identification, identify
+from tendonlab.routing import BranchLosses, Reducer, TendonTransmission
 from tendonlab.sweep import sweep
 from tendonlab.system import System
 from tendonlab.trajectory import Trajectory
 
 __version__ = _version("tendonlab")
 __all__ = [
+    "BranchLosses",
     "Dataset",
     "DatasetError",
     "Diagnosis",
@@ -21,7 +23,9 @@ __all__ = [
     "Identification",
     "NumericalError",
     "ParameterError",
+    "Reducer",
     "System",
+    "TendonTransmission",
     "Trajectory",
     "actuation",
     "diagnose",

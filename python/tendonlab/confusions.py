@@ -31,8 +31,8 @@ CONFUSIONS = (
     ),
     Confusion(
         ("cable:load_dependence", "gear:efficiency", "load:scale_error"),
-        "several loads, each raised and lowered: a cable loses with the sense of its own motion, a gear with that of the "
-        "joint's power, a wrong load does not turn its sign with the motion",
+        "several loads, each raised and lowered: a cable loses with the sense of its own motion, a gear with that of "
+        "the joint's power, and a wrong load does not turn its sign with the motion",
     ),
     Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"

@@ -121,7 +121,7 @@ def free_parameters(
             rows.append(_effect_parameter(index, p, scale, system.parameters[p.name]))
             continue
         stated = nominal.get(p.name)
-        if stated is None or stated.sd == 0 or (stated.sd is None and _known_by_default(p)):
+        if stated is None or stated.sd == 0 or (stated.sd is None and _known_by_default(p, stated.value)):
             continue
         rows.append(_nominal_parameter(index, p, stated, scale))
     if not rows:
@@ -139,9 +139,11 @@ def start_of(system: System, effect: str, of: Mapping[str, Scale]) -> dict[str, 
     return values
 
 
-def _known_by_default(p: Parameter) -> bool:
-    """A torque constant or gear ratio without `sd` is taken at its word: only the torques' ratio to it can be seen."""
-    return p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
+def _known_by_default(p: Parameter, value: float) -> bool:
+    """A torque constant or gear ratio without `sd` is taken at its word: only the torques' ratio to it can be seen. So
+    is 0 for what is usually not there."""
+    usual = p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
+    return usual or (value == 0.0 and p.typical == 0.0)
 
 
 def _nominal_parameter(index: int, p: Parameter, stated: NominalParameter, scale: float) -> Free:

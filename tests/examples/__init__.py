@@ -16,15 +16,16 @@ T = np.linspace(0.0, 1.0, 201)
 
 @dataclass(frozen=True, kw_only=True)
 class Example:
-    """`parameters`: of the system with its default nominal effects. `inputs`: by name, given at T. `scale(element,
-    dimension)`: what is of the order of the motion there, 1 for ratios. `events`: whether modes change on the way.
-    `between`: what the inputs are between samples."""
+    """`parameters`: of the system with its default nominal effects and `effects`. `inputs`: by name, given at T.
+    `scale(element, dimension)`: what is of the order of the motion there, 1 for ratios. `events`: whether modes change
+    on the way. `between`: what the inputs are between samples."""
 
     parameters: Mapping[str, float]
     inputs: Mapping[str, np.ndarray]
     scale: Callable[[str, str], float]
     events: bool = True
     between: str = "smooth"
+    effects: tuple[str, ...] = ()
 
 
 def example(kind: str) -> Example:
@@ -42,6 +43,6 @@ def with_effect(kind: str, effect: str, *, off: bool = False) -> System:
         row = info.parameter(name)
         typical = row.typical * of.scale(row.element or "", row.dimension)
         values[name] = 0.0 if off and row.amplitude else of.parameters.get(name, typical)
-    nominal = info.default_nominal_effects
+    nominal = (*info.default_nominal_effects, *of.effects)
     effects = nominal if effect in nominal else (*nominal, effect)
     return System(kind=kind, parameters={**of.parameters, **values}, effects=effects)

@@ -15,7 +15,8 @@ def scale(element: str, dimension: str) -> float:
 
 
 EXAMPLE = Example(
-    parameters={**example_device().parameters(), "cable_coulomb": 0.4, "cable_viscous": 2.0},
+    parameters={**example_device().parameters(), "cable_coulomb": 0.4},
+    effects=("cable:coulomb",),  # a bristle asks for dry friction to take over
     inputs={
         **{f"motor_velocity_{i + 1}": MOTOR[:, i] for i in range(4)},
         **{f"external_torque_{i + 1}": peak * np.cos(3.0 * T + i) for i, peak in enumerate((6.0, 4.0, 0.8, 1.5))},

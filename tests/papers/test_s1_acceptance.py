@@ -38,7 +38,7 @@ def test_a1_without_losses_it_is_the_dual_of_the_kinematics() -> None:
 @pytest.mark.parametrize("reducers", [False, True])
 def test_a1_power_is_balanced(model: str, reducers: bool) -> None:
     device = s1.example_device(reducers=reducers)
-    found = device.statics.inverse(TORQUE, VELOCITY, model=model)  # type: ignore[arg-type]
+    found = device.statics.inverse(TORQUE, VELOCITY, model=model)
     motor = device.kinematics.joint_to_motor(VELOCITY)
     given, taken = np.sum(found.torque * motor, axis=1), np.sum(TORQUE * VELOCITY, axis=1)
     lost = found.branch_power + reducer_loss(device, found, VELOCITY)
@@ -52,8 +52,8 @@ def test_a1_power_is_balanced(model: str, reducers: bool) -> None:
 def test_direct_is_the_exact_inverse(model: str, sign_velocity: float) -> None:
     device = s1.example_device()
     options = {"model": model, "sign_velocity": sign_velocity}
-    motors = device.statics.inverse(TORQUE, VELOCITY, **options)  # type: ignore[arg-type]
-    joints = device.statics.direct(motors.torque, VELOCITY, **options)  # type: ignore[arg-type]
+    motors = device.statics.inverse(TORQUE, VELOCITY, **options)
+    joints = device.statics.direct(motors.torque, VELOCITY, **options)
     np.testing.assert_allclose(joints.torque, TORQUE, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(joints.tension, motors.tension, rtol=1e-11, atol=1e-10)
 
@@ -159,6 +159,23 @@ def test_what_each_effect_costs_at_motor_1() -> None:
         np.testing.assert_allclose(found.loc[name], sizes, atol=0.1)
 
 
+def test_the_signature_of_the_gap() -> None:
+    """Constant and viscous losses (12) explain most of what the ideal transmission misses, whatever the load; what (11)
+    adds to them grows with it."""
+    device, at = s1.example_device(reducers=False), s1.free_motion(duration=6.0)
+    left = {}
+    for load in (np.zeros(4), np.full(4, 10.0)):  # N·m
+        twin = inverse_statics(device, np.broadcast_to(load, at.joint_velocity.shape), at.joint_velocity)
+        for model in ("ideal", "eq12", "full"):
+            missed = twin - device.statics.inverse(load, at.joint_velocity, model=model).torque
+            left[model, load[0]] = np.sqrt(np.mean(np.square(missed)))
+    assert left["eq12", 0.0] < 0.5 * left["ideal", 0.0]
+    assert left["eq12", 10.0] < 0.5 * left["ideal", 10.0]
+    assert left["eq12", 10.0] > 3 * left["eq12", 0.0]
+    assert left["full", 0.0] < 1e-12
+    assert left["full", 10.0] < 1e-12
+
+
 def test_figures_3_and_4_give_what_the_library_gives() -> None:
     three = s1.first_joints(s1.example_device(), 3)
     motor, torque, velocity = RNG.normal(size=(50, 3)), RNG.normal(size=(50, 3)), RNG.normal(size=3)
@@ -182,7 +199,7 @@ def test_the_papers_own_gap_is_diagnosed(tmp_path: Path) -> None:
     rig = tl.load(s1.write_dataset(tmp_path))
     began = time.process_time()
     why = tl.diagnose(rig, progress=False)
-    assert time.process_time() - began < 60
+    assert time.process_time() - began < 20
     assert why.verdict == "effect"
     assert why.selected == ("cable:load_dependence",)
     assert why.shrinkage["from_refitted"]["value"] > 0.5

@@ -77,7 +77,7 @@ def test_inverse_statics(name: str) -> None:
     check, device = CHECKS[name], device_of(name)
     given = check["input"]
     found = device.statics.inverse(
-        given["C_E"], given["qdot"], model=name.split(".")[2], sign_velocity=given["v_s"]  # type: ignore[arg-type]
+        given["C_E"], given["qdot"], model=name.split(".")[2], sign_velocity=given["v_s"]
     )  # fmt: skip
     close(found.torque, check, "C_m")
     if "power_lost" in check["output"]:
@@ -104,18 +104,18 @@ def test_direct_statics() -> None:
 def test_identification(name: str) -> None:
     check, device = CHECKS[name], example_device(reducers=False)
     strategy, joint = name.split(".")[1], check["input"]["motor"]
-    found = identify_joint(device, joint, strategy=strategy, speeds=check["input"]["speeds"])  # type: ignore[arg-type]
+    found = identify_joint(device, joint, strategy=strategy, speeds=check["input"]["speeds"])
     close(found.constant, check, "C_m0")
     close(found.viscous, check, "nu")
     constant, viscous = true_motor_friction(device, joint)
     close(constant, check, "true_C_m0")
     close(viscous, check, "true_nu")
-    plan = plan_identification(device, joint, strategy=strategy, speeds=(6.0, -6.0))  # type: ignore[arg-type]
+    plan = plan_identification(device, joint, strategy=strategy, speeds=(6.0, -6.0))
     close(plan.joint_velocity[0], check, "qdot_at_6")
     forms = {"residual_exact_at_6": "exact", "residual_first_order_at_6": "first_order",
              "residual_as_printed_at_6": "printed"}  # fmt: skip
     for key, form in forms.items():
-        error = residual_error(device, joint, strategy=strategy, speed=6.0, form=form)  # type: ignore[arg-type]
+        error = residual_error(device, joint, strategy=strategy, speed=6.0, form=form)
         close(error, check, key, atol=1e-16)  # rounding of a motor torque of 0.1 N·m where the residual is 0
 
 

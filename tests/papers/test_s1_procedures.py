@@ -27,7 +27,7 @@ def test_what_is_no_transmission_is_refused() -> None:
     with pytest.raises(tl.ParameterError, match=r"torque of shape \(3,\): expected"):
         device.statics.inverse(np.zeros(3), np.zeros(2))
     with pytest.raises(tl.ParameterError, match=r"model = .*: expected ideal, eq11, eq12 or full"):
-        device.statics.inverse(np.zeros(2), np.zeros(2), model="eq13")  # type: ignore[arg-type]
+        device.statics.inverse(np.zeros(2), np.zeros(2), model="eq13")
     with pytest.raises(tl.ParameterError, match="torque = nan: expected finite numbers"):
         device.statics.inverse([np.nan, 0.0], np.zeros(2))
 

@@ -1,5 +1,7 @@
 """The routing as a system of the library: the same statics, and every effect on each branch or reducer."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,7 +11,6 @@ from tendonlab.papers.s1 import example_device, first_joints, free_motion, gravi
 from tendonlab.routing import TendonTransmission
 
 MOTION = free_motion(duration=4.0, sample_time=0.01)
-NOMINAL = ("cable:coulomb", "cable:viscous")
 
 
 def log(device: TendonTransmission) -> pd.DataFrame:
@@ -22,8 +23,7 @@ def log(device: TendonTransmission) -> pd.DataFrame:
 
 
 def system(device: TendonTransmission, effects: dict[str, dict[str, float]] | None = None) -> tl.System:
-    values = {**device.parameters(), "cable_coulomb": 0.0, "cable_viscous": 0.0}
-    return tl.System(kind="tendon_routing", parameters=values, effects=NOMINAL).with_effects(effects or {})
+    return tl.System(kind="tendon_routing", parameters=device.parameters()).with_effects(effects or {})
 
 
 def motors(of: tl.System, device: TendonTransmission) -> np.ndarray:
@@ -88,12 +88,38 @@ def test_a_stiff_bristle_is_dry_friction_and_a_soft_one_comes_late() -> None:
     moved = log(device)
     away = np.abs(moved["motor_velocity_1"].to_numpy()) > 1.0
     away[:5] = False  # the bristle starts unbent
+    dry = {"cable:coulomb": {"coulomb": 0.0}}  # what the branches have by themselves is enough
     stiff, soft = (
-        motors(system(device, {"cable:presliding": {"bristle_stiffness": k, "bristle_damping": 0.0}}), device)[:, 0]
+        motors(system(device, {**dry, "cable:presliding": {"bristle_stiffness": k, "bristle_damping": 0.0}}), device)[
+            :, 0
+        ]
         for k in (1e6, 1e2)
     )
     np.testing.assert_allclose(stiff[away], steady[away], rtol=1e-6)
     assert np.max(np.abs(soft - steady)) > 0.01
+
+
+def test_what_a_dataset_does_not_name_is_not_there(tmp_path: Path) -> None:
+    """Cables that cross no other joint, one of them with a loss: pulleys and reducers are all that has to be named."""
+    named = {f"radius_{i}_{i}": 0.05 for i in range(1, 5)} | {f"motor_radius_{i}": 0.01 for i in range(1, 5)}
+    named |= {f"reducer_{what}_{i}": 1.0 for what in ("ratio", "efficiency") for i in range(1, 5)}
+    named |= {"constant_loss_1_0": 2.0}
+    time = np.linspace(0.0, 4.0, 81)
+    speed = np.cos(2 * time)
+    frame = pd.DataFrame({"t": time, "v": speed, "c": 0.1 * np.sin(time) + 0.02 * np.sign(speed)})
+    lines = ['format = "tendonlab-dataset/1"', 'name = "two"', "[system]", 'kind = "tendon_routing"']
+    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in named.items())]
+    lines += ["[signals]", 'motor_velocity_1 = { column = "v", unit = "rad/s" }']
+    lines += ['motor_torque_1 = { column = "c", unit = "N*m" }']
+    for k in range(4):
+        frame.to_csv(tmp_path / f"{k}.csv", index=False)
+        lines += ["[[experiments]]", f'name = "{k}"', f'file = "{k}.csv"']
+    (tmp_path / "dataset.toml").write_text("\n".join(lines), encoding="utf-8")
+    rig = tl.load(tmp_path)
+    assert rig.parameters["viscous_loss_4_3"].value == 0.0
+    assert rig.parameters["radius_2_1"].sd == 0.0
+    found = rig.system().simulate(rig["0"]).outputs
+    np.testing.assert_allclose(found["motor_torque_1"], 0.02 * np.sign(speed), rtol=1e-12)
 
 
 def test_a_driven_pulley_without_radius_is_refused() -> None:

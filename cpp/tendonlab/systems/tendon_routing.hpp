@@ -50,8 +50,8 @@ struct TendonRouting : tendon::Entries<T> {
                                                   {"motor_torque_3", "torque of motor 3", Dimension::torque, -1},
                                                   {"motor_torque_4", "torque of motor 4", Dimension::torque, -1}}};
   static constexpr std::array<std::string_view, 0> structural{};
-  /// What the parameters already say; the effects' own are what every branch has beyond them.
-  static constexpr std::array<std::string_view, 2> nominal{"cable:coulomb", "cable:viscous"};
+  /// Losses of the parameters are no effects. Effects that refine dry friction ask for `cable:coulomb`, perhaps of 0.
+  static constexpr std::array<std::string_view, 0> nominal{};
 
   using Cable = Slot<T, friction::All>;
   using Gear = Slot<T, Laws<friction::Efficiency>>;

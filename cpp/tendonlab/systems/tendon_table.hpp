@@ -18,7 +18,8 @@ constexpr std::size_t row_of(std::size_t cell) {
   return i;
 }
 
-/// A kind of parameter; `first` is the number of the first joint (1) or link (0), -1 where there is one a motor.
+/// A kind of parameter; where it is not named it is 0 if `typical` is. `first` is the number of the first joint (1) or
+/// link (0), -1 where there is one a motor.
 struct Kind {
   std::string_view name;
   Dimension dimension;
@@ -30,9 +31,9 @@ enum KindOf { radius, constant_loss, tension_loss, viscous_loss, motor_radius, r
 inline constexpr Kind kinds[] = {
     {"radius", Dimension::length, 0.05, -inf, inf, 1,
      "signed radius of the pulley of a transmission at a joint; at its own joint without the reducer's ratio"},
-    {"constant_loss", Dimension::force, 1.0, 0.0, inf, 0, "tension lost on a link whatever the tension"},
-    {"tension_loss", Dimension::ratio, 0.01, 0.0, 0.999, 0, "tension lost on a link per tension before it"},
-    {"viscous_loss", Dimension::line_damping, 1.0, 0.0, inf, 0, "tension lost on a link per speed of the cable"},
+    {"constant_loss", Dimension::force, 0.0, 0.0, inf, 0, "tension lost on a link whatever the tension"},
+    {"tension_loss", Dimension::ratio, 0.0, 0.0, 0.999, 0, "tension lost on a link per tension before it"},
+    {"viscous_loss", Dimension::line_damping, 0.0, 0.0, inf, 0, "tension lost on a link per speed of the cable"},
     {"motor_radius", Dimension::length, 0.01, 1e-9, inf, -1, "radius of the motor's pulley"},
     {"reducer_ratio", Dimension::ratio, 1.0, 1e-9, inf, -1, "ratio of the reducer on the driven pulley; 1: none"},
     {"reducer_efficiency", Dimension::ratio, 1.0, 0.5, 1.0, -1, "efficiency of that reducer while driving"}};
@@ -98,9 +99,10 @@ constexpr auto table(std::index_sequence<k...>) {
   const auto row = [](auto index) {
     constexpr std::size_t i = decltype(index)::value;
     constexpr const Kind& kind = kinds[kind_of(i)];
+    constexpr bool crossed = kind_of(i) == radius && place_of(i) != cell(row_of(place_of(i)), row_of(place_of(i)));
     T Owner::*field = &Entry<T, i>::value;
-    return parameter(field, Named<i>::name, kind.dimension, Purpose::structure, kind.typical, kind.lower, kind.upper,
-                     kind.meaning);
+    return parameter(field, Named<i>::name, kind.dimension, Purpose::structure, crossed ? 0.0 : kind.typical,
+                     kind.lower, kind.upper, kind.meaning);
   };
   return std::tuple{row(std::integral_constant<std::size_t, k>{})...};
 }

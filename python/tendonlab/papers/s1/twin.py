@@ -3,6 +3,7 @@ It makes the logs on which the paper's missing effect, the loss in proportion to
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -65,17 +66,18 @@ class Session:
     repeat: str | None = None
 
 
-def sessions() -> list[Session]:
+def sessions(levels: Sequence[float] = LOAD_LEVELS) -> list[Session]:
     """Two motions at each level of gravity to fit, one of them three times, and a third motion held out at each."""
+    middle = sorted(levels)[len(levels) // 2]
     motions = {
         "a": ((0.25, 0.20, 0.30, 0.35), (0.0, 0.4, 0.8, 1.2)),
         "b": ((0.15, 0.35, 0.22, 0.28), (1.0, 0.0, 2.0, 0.5)),
         "c": ((0.32, 0.24, 0.18, 0.40), (2.1, 1.3, 0.3, 0.0)),
     }
     found = []
-    for level in LOAD_LEVELS:
+    for level in levels:
         for motion, (frequency, phase) in motions.items():
-            repeated = motion == "a" and level == 1.0
+            repeated = motion == "a" and level == middle
             for take in range(3 if repeated else 1):
                 found.append(
                     Session(
@@ -120,14 +122,15 @@ def nominal_device() -> TendonTransmission:
     return replace(device, losses=losses)
 
 
-def write_dataset(folder: str | Path, *, seed: int = 0) -> Path:
-    """Write the twin's logs, and the nominal simulator without the tension-proportional loss, as a dataset folder."""
+def write_dataset(folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, seed: int = 0) -> Path:
+    """Write the twin's logs at `levels` of gravity, and the nominal simulator without the tension-proportional loss, as
+    a dataset folder."""
     target, rng = Path(folder), np.random.default_rng(seed)
     target.mkdir(parents=True, exist_ok=True)
     lines = [
         'format = "tendonlab-dataset/1"',
         'name = "s1-twin"',
-        'description = "Twin of the reconstructed arm of S1, gravity x 0.2, x 1 and x 5; generated, not measured"',
+        'description = "Twin of the reconstructed arm of S1; generated, not measured"',
         "[system]",
         'kind = "tendon_routing"',
         "[system.parameters]",
@@ -135,11 +138,10 @@ def write_dataset(folder: str | Path, *, seed: int = 0) -> Path:
     for name, value in nominal_device().parameters().items():
         uncertain = value > 0 and name.startswith(("constant_loss", "viscous_loss"))
         lines.append(f"{name} = {{ value = {value!r}, sd = {0.3 * value if uncertain else 0.0!r} }}")
-    lines += [f"{name} = {{ value = 0.0, sd = 0.0 }}" for name in ("cable_coulomb", "cable_viscous")]
     lines.append("[signals]")
     for name, unit in (("motor_velocity", "rad/s"), ("external_torque", "N*m"), ("motor_torque", "N*m")):
         lines += [f'{name}_{i} = {{ column = "{name}_{i}", unit = "{unit}" }}' for i in range(1, 5)]
-    for of in sessions():
+    for of in sessions(levels):
         record(example_device(), of, rng).to_csv(target / f"{of.name}.csv", float_format="%.9g")
         lines += ["[[experiments]]", f'name = "{of.name}"', f'file = "{of.name}.csv"', f'split = "{of.split}"']
         lines += [f'repeat = "{of.repeat}"'] if of.repeat else []
