@@ -66,7 +66,8 @@ def choose(dataset: Dataset, system: System) -> Replay:
     if controller is not None:
         return Replay("controller", controller.kp, controller.kd, controller.measured)
     first = next((s.name for s in system.info.outputs if s.axis == 0), None)
-    if first is None or first not in dataset.outputs or not system.info.commanded:
+    command = system.info.inputs[0].name if system.info.commanded else None  # another input may stand in for it
+    if first is None or first not in dataset.outputs or command not in dataset.inputs:
         return Replay("free")
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
     rates = [2 * np.pi * _frequency_below(e.time, e.data[first].to_numpy()) for e in dataset.train]

@@ -147,7 +147,7 @@ struct CableJoint {
     const S known = load.apply(S{});
     set(c.port[joint], at.velocity[0], theta, 0.5 * (arm * pull - gravity_torque - known), mode[joint_sense]);
     set(c.port[motor], omega, at.position[1], nut.velocity * pull, mode[motor_sense]);
-    set(c.port[winding], omega, at.position[1], actuation.apply(S(in.command(at))));
+    set(c.port[winding], omega, at.position[1], idles ? S{} : actuation.apply(S(in.command(at))));
     set(c.port[gear], turning, turned / gear_ratio);  // one turn of the screw is one cycle of a ripple
     c.applied[0] = gravity_torque + whirl(theta) * square(at.velocity[0]) + known;
     c.inverse_inertia = {1.0 / inertia(cosine), constant<S>(1.0) / motor_inertia};

@@ -52,7 +52,9 @@ def reference(
     for a, b in pairwise(points):
         length = abs(b - a) / speed + ramp
         if abs(b - a) < speed * ramp:
-            raise ParameterError(f"move of {b - a:g} rad: expected at least {speed * ramp:g} rad to reach {speed:g} rad/s")
+            raise ParameterError(
+                f"move of {b - a:g} rad: expected at least {speed * ramp:g} rad to reach {speed:g} rad/s"
+            )
         pieces.append((now, length, b - a))
         moves.append((now, now + length))
         now += length + dwell
