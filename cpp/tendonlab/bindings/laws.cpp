@@ -284,7 +284,7 @@ void bind_laws(py::module_& module) {
   bind_group<transmission::All>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
   bind_group<transmission::Sheath>(module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
   bind_group<loading::All>(module, "loading", "Laws of what acts on the joint from outside.", registered);
-  bind_group<actuation::All>(module, "actuation", "Laws of actuators.", registered);
+  bind_group<Joined<actuation::All, actuation::Driven>::type>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
   module.def(
       "units",

@@ -30,7 +30,9 @@ struct BowdenPair {
   using Laws = typename Joined<transmission::Sheath, friction::All>::type;
   std::tuple<Slot<T, Laws>> slot;
   Chain<T, tendonlab::Laws<>> load;
-  Chain<T, tendonlab::Laws<actuation::GainError, actuation::Offset>> actuation;
+  Chain<T, tendonlab::Laws<tendonlab::actuation::GainError, tendonlab::actuation::Offset,
+                           tendonlab::actuation::DriveInertia>>
+      actuation;
   std::array<Chain<T, sensing::All>, 1> sensor;
   T threshold_velocity, threshold_slope, input_radius, output_radius, sheath_length, cable_stiffness, pretension,
       wrap_angle;
@@ -59,7 +61,7 @@ struct BowdenPair {
   template <class Inputs, class Memory>
   Sample<T, 1, 1> evaluate(const Inputs& in, Memory& memory) const {
     const auto& sheath = std::get<0>(slot);
-    const T torque = actuation.apply(in.template input<0>()), velocity = in.template input<1>();
+    const T torque = driving(in), velocity = in.template input<1>();
     T& travel = memory.own[2];
     travel = travel + in.dt * velocity;
     Sliding<T> at = sliding(velocity, travel, T((output_radius / input_radius) * torque), wrap_angle);
@@ -78,6 +80,16 @@ struct BowdenPair {
   }
 
  private:
+  /// The torque that reaches the sheath's pulley.
+  template <class Inputs>
+  T driving(const Inputs& in) const {
+    T torque = actuation.apply(in.template input<0>());
+    actuation.each([&](const auto& law) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(law)>, tendonlab::actuation::DriveInertia<T>>)
+        torque = torque - law.reaction(in.template slope<1>());
+    });
+    return torque;
+  }
   /// Calls f(law) for the laws of the sheath of type `Law` that are on.
   template <class Law, class F>
   void each_of(F&& f) const {

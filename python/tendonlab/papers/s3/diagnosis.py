@@ -31,11 +31,13 @@ class Withheld:
     told: str
     records: tuple[Record, ...] = field(repr=False)
     held_out: tuple[Record, ...] = field(repr=False)
-    uncertain: float = 0.03
+    friction_known: bool = False
 
     def dataset(self) -> Dataset:
         """As a dataset of kind `bowden_pair` whose simulator lacks the effect."""
-        return to_dataset(self.records, self.held_out, identified(), name=self.effect, uncertain=self.uncertain)
+        return to_dataset(
+            self.records, self.held_out, identified(), name=self.effect, friction_known=self.friction_known
+        )
 
 
 @cache
@@ -73,7 +75,7 @@ def _runs(
             pretension_scale=pretension_scale,
             sample_rate=SAMPLE_RATE,
         )
-        for k, (number, reading, kind, amplitude, period) in enumerate(runs)
+        for k, (number, reading, kind, amplitude, period) in enumerate([*runs, *runs])
     )
 
 
@@ -99,18 +101,19 @@ def _pretension_loss() -> Withheld:
         told="true pretension 0.8 of the reading",
         records=_runs([*fitted, (8, 30.0, "sine", 15.0, 10.0)], seed=21, pretension_scale=0.8),
         held_out=_runs(judged, seed=31, pretension_scale=0.8),
-        uncertain=0.0,
+        friction_known=True,
     )
 
 
 def _presliding() -> Withheld:
-    fitted = [(6, 54.0), (3, 54.0), (8, 54.0), (6, 40.0)]
-    judged = [(5, 54.0), (7, 54.0)]
+    """Sines and superposed torques together: one gate can be tuned to either, not to both."""
+    fitted, judged = [(6, 54.0), (3, 54.0), (8, 40.0)], [(5, 54.0), (7, 54.0)]
+    both = (("sine", 15.0, 10.0), ("superposed", 15.0, 10.0))
     return Withheld(
         effect="sheath:distributed_presliding",
         told="the cable stretches from its input on before its far end moves",
-        records=_runs([(n, kg, "superposed", 15.0, 10.0) for n, kg in fitted], seed=41),
-        held_out=_runs([(n, kg, "superposed", 15.0, 10.0) for n, kg in judged], seed=51),
+        records=_runs([(*group, *commanded) for group in fitted for commanded in both], seed=41),
+        held_out=_runs([(*group, *commanded) for group in judged for commanded in both], seed=61),
     )
 
 
