@@ -115,17 +115,6 @@ def compared(ax: Axes, record: Record, prediction: Prediction, *, title: str) ->
     tidy(ax)
 
 
-def gap(ax: Axes, records: Sequence[str], *, before: Sequence[float], after: Sequence[float], floor: float) -> None:
-    """RMS error of each record before and after an effect was added, and the noise floor, N·m."""
-    at = np.arange(len(records))
-    ax.bar(at - 0.18, before, 0.34, color="#8d959d", label="simulator as it is")
-    ax.bar(at + 0.18, after, 0.34, color=MODEL, label="with the effects found")
-    ax.axhline(floor, color=INK, lw=0.9, ls=(0, (4, 2)), label="noise floor")
-    ax.set(xticks=at, xticklabels=records, ylabel="RMS error of the output torque (N·m)")
-    ax.legend(fontsize=8, frameon=False)
-    tidy(ax)
-
-
 def _settled(record: Record) -> pd.DataFrame:
     """The log without its first quarter period, the start from rest."""
     return record.log.loc[0.25 * record.trajectory.period :]
