@@ -285,15 +285,11 @@ void bind_group(py::module_& module, const char* group, const char* doc, py::lis
 
 void bind_laws(py::module_& module) {
   py::list registered;
-  using Friction = Joined<friction::All, friction::Curves, friction::Bushing, friction::Gears>::type;
-  using Transmission = Joined<transmission::All, transmission::Contacts, transmission::Pull>::type;
-  using Loading = Joined<loading::All, loading::Known>::type;
-  using Actuation = Joined<actuation::All, actuation::Motor>::type;
-  bind_group<Friction>(module, "friction", "Friction laws.", registered);
-  bind_group<Transmission>(module, "transmission", "Laws of cables, sheaths and gears.", registered);
+  bind_group<friction::Every>(module, "friction", "Friction laws.", registered);
+  bind_group<transmission::Every>(module, "transmission", "Laws of cables and gears.", registered);
   bind_group<transmission::Sheath>(module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
-  bind_group<Loading>(module, "loading", "Laws of what acts on the joint from outside.", registered);
-  bind_group<Actuation>(module, "actuation", "Laws of actuators.", registered);
+  bind_group<loading::Every>(module, "loading", "Laws of what acts on the joint from outside.", registered);
+  bind_group<actuation::Every>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
   module.def(
       "units",

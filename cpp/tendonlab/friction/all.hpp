@@ -21,4 +21,6 @@ using Curves = Laws<LoadAndRatio, StaticLugre>;
 using Bushing = Laws<BushingBranches, BushingSine, BushingCapstan>;
 /// Of gears: their own friction, and what they lose of what they carry.
 using Gears = Laws<Arctan, Efficiency>;
+/// Every law of the group.
+using Every = Joined<All, Curves, Bushing, Gears>::type;
 }  // namespace tendonlab::friction

@@ -17,7 +17,7 @@ struct BowdenPair {
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
   static constexpr bool sampled = true, commanded = false, plain_names = true;
-  static constexpr std::size_t carried = 3;    ///< output of the gate, torque that is held, travel of the drive
+  static constexpr std::size_t carried = 4;    ///< output of the gate, friction that turns, torque before it, travel
   static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
   static constexpr std::array<Port, 1> ports{{{"sheath"}}};
   static constexpr std::array<Input, 2> inputs{
@@ -30,7 +30,9 @@ struct BowdenPair {
   using Laws = typename Joined<transmission::Sheath, friction::All>::type;
   std::tuple<Slot<T, Laws>> slot;
   Chain<T, tendonlab::Laws<>> load;
-  Chain<T, tendonlab::Laws<actuation::GainError, actuation::Offset>> actuation;
+  Chain<T, tendonlab::Laws<tendonlab::actuation::GainError, tendonlab::actuation::Offset,
+                           tendonlab::actuation::DriveInertia>>
+      actuation;
   std::array<Chain<T, sensing::All>, 1> sensor;
   T threshold_velocity, threshold_slope, input_radius, output_radius, sheath_length, cable_stiffness, pretension,
       wrap_angle;
@@ -59,25 +61,36 @@ struct BowdenPair {
   template <class Inputs, class Memory>
   Sample<T, 1, 1> evaluate(const Inputs& in, Memory& memory) const {
     const auto& sheath = std::get<0>(slot);
-    const T torque = actuation.apply(in.template input<0>()), velocity = in.template input<1>();
-    T& travel = memory.own[2];
+    const T torque = driving(in), velocity = in.template input<1>();
+    T& travel = memory.own[3];
     travel = travel + in.dt * velocity;
     Sliding<T> at = sliding(velocity, travel, T((output_radius / input_radius) * torque), wrap_angle);
     at.preload = 2.0 * output_radius * pretension;
     const Sliding<T> seen = moved(at);
     const T friction = answer(sheath, at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
-    if (!memory.begun) memory.own = {middle, middle, travel};
+    if (!memory.begun) memory.own = {middle, T(0.0), middle, travel};
     T output = gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
     each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
-      memory.own[1] = law.held(memory.own[1], middle, sheath.dry_level(seen));
+      memory.own[1] = law.turned(memory.own[1], T(middle - memory.own[2]), sheath.dry_level(seen));
       T smooth{};
       sheath.template each<role::force>([&](const auto& other) { smooth = smooth + other.force(seen); });
-      output = output + law.share * (memory.own[1] - smooth - output);
+      output = output + law.share * (middle - memory.own[1] - smooth - output);
     });
+    memory.own[2] = middle;
     return {{output}, {at}, {friction}};
   }
 
  private:
+  /// The torque that reaches the sheath's pulley.
+  template <class Inputs>
+  T driving(const Inputs& in) const {
+    T torque = actuation.apply(in.template input<0>());
+    actuation.each([&](const auto& law) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(law)>, tendonlab::actuation::DriveInertia<T>>)
+        torque = torque - law.reaction(in.template slope<1>());
+    });
+    return torque;
+  }
   /// Calls f(law) for the laws of the sheath of type `Law` that are on.
   template <class Law, class F>
   void each_of(F&& f) const {

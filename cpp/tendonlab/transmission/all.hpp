@@ -21,4 +21,6 @@ using Contacts = Laws<Capstan, Stribeck, Asymmetry>;
 using Pull = Laws<TautCompliance, Ripple, Hold>;
 /// Of pretensioned tendons in sheaths.
 using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack, DistributedPresliding>;
+/// Every law of the group.
+using Every = Joined<All, Contacts, Pull>::type;
 }  // namespace tendonlab::transmission

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#8c564b", "#7f7f7f", "#bcbd22")
 MODEL, HOLD = "#d55e00", "#f1e3c6"
+SHOWN = 3  # every so many samples of a log: more are not told apart on paper
 
 
 def free_bodies(ax: Axes, *, reading: float) -> None:
@@ -100,32 +101,24 @@ def holds(ax: Axes, record: Record, *, speed: float) -> None:
 def in_time(ax: Axes, record: Record, *, label: str = r"$\tau_{out}$", colour: str = COLOURS[0]) -> None:
     """Input and output torque over time."""
     ax.plot(record.log.index, record.log["tau_in"], color=MUTED, lw=1.0, label=r"$\tau_{in}$")
-    ax.plot(record.log.index, record.log["tau_out"], ".", ms=1.5, color=colour, label=label)
+    shown = record.log.iloc[::SHOWN]
+    ax.plot(shown.index, shown["tau_out"], ".", ms=2.0, color=colour, label=label)
     ax.set(xlabel="time (s)", ylabel="torque (N·m)")
+    ax.margins(x=0.01, y=0.2)
     tidy(ax)
 
 
 def compared(ax: Axes, record: Record, prediction: Prediction, *, title: str) -> None:
-    """Measured and predicted output over time, with the error below zero."""
+    """Measured and predicted output over time."""
     time, measured = record.log.index.to_numpy(), record.log["tau_out"].to_numpy()
     ax.plot(time, record.log["tau_in"], color="#b8c0c8", lw=1.0, label=r"$\tau_{in}$")
-    ax.plot(time, measured, ".", ms=1.5, color=INK, label=r"$\tau_{out}$, twin")
+    ax.plot(time[::SHOWN], measured[::SHOWN], ".", ms=2.0, color=INK, label=r"$\tau_{out}$, twin")
     ax.plot(time, prediction.tau_out, color=MODEL, lw=1.2, label=r"$\tau_{out}$, model")
     ax.set(xlabel="time (s)", ylabel="torque (N·m)", title=title)
-    tidy(ax)
-
-
-def gap(ax: Axes, records: Sequence[str], *, before: Sequence[float], after: Sequence[float], floor: float) -> None:
-    """RMS error of each record before and after an effect was added, and the noise floor, N·m."""
-    at = np.arange(len(records))
-    ax.bar(at - 0.18, before, 0.34, color="#8d959d", label="simulator as it is")
-    ax.bar(at + 0.18, after, 0.34, color=MODEL, label="with the effects found")
-    ax.axhline(floor, color=INK, lw=0.9, ls=(0, (4, 2)), label="noise floor")
-    ax.set(xticks=at, xticklabels=records, ylabel="RMS error of the output torque (N·m)")
-    ax.legend(fontsize=8, frameon=False)
+    ax.margins(x=0.01, y=0.2)
     tidy(ax)
 
 
 def _settled(record: Record) -> pd.DataFrame:
-    """The log without its first quarter period, the start from rest."""
-    return record.log.loc[0.25 * record.trajectory.period :]
+    """Every third sample of the log after its first quarter period, the start from rest."""
+    return record.log.loc[0.25 * record.trajectory.period :].iloc[::SHOWN]

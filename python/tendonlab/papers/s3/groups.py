@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pandas as pd
 
 from tendonlab.data import Dataset, Experiment
 from tendonlab.data.dataset import NominalParameter, SignalSpec
-from tendonlab.papers.s3.chain import TORQUE_NOISE_SD, Chain
+from tendonlab.papers.s3.chain import TORQUE_NOISE_SD, Chain, with_noise
 from tendonlab.papers.s3.model import GATE_PERIOD, Prediction, mean_squared_error, predict_log
 from tendonlab.papers.s3.rig import DEGREE, FrictionParameters, Rig, assumed_rig, cable_pretension
 from tendonlab.papers.s3.shapes import BumpShape, paper_shape
@@ -59,14 +60,35 @@ def run_chain(
     sample_rate: float = 200.0,
 ) -> Record:
     """A record of the twin on shape theta_`number` with both load cells at `reading`, kg; see Chain."""
+    log = _exact_log(number, reading, trajectory, duration, sample_rate, slack, pretension_scale)
+    log = log.copy() if seed is None else with_noise(log, seed=seed)
+    name = f"theta_{number}, {reading:g} kg, {trajectory.amplitude:g} N*m, {trajectory.kind} {trajectory.period:g} s"
+    return Record(
+        name=name,
+        shape=paper_shape(number),
+        load_in=reading,
+        load_out=reading,
+        trajectory=trajectory,
+        log=log,
+        group=number,
+    )
+
+
+@cache
+def _exact_log(
+    number: int,
+    reading: float,
+    trajectory: Trajectory,
+    duration: float,
+    sample_rate: float,
+    slack: bool,
+    pretension_scale: float,
+) -> pd.DataFrame:
+    """One integration a session: repeats of a run differ only by the noise of its sensors."""
     chain = Chain(
         shape=paper_shape(number), pretension=cable_pretension(reading), slack=slack, pretension_scale=pretension_scale
     )
-    log = chain.simulate(trajectory, duration=duration, sample_rate=sample_rate, seed=seed)
-    name = f"theta_{number}, {reading:g} kg, {trajectory.amplitude:g} N*m, {trajectory.kind} {trajectory.period:g} s"
-    return Record(
-        name=name, shape=chain.shape, load_in=reading, load_out=reading, trajectory=trajectory, log=log, group=number
-    )
+    return chain.simulate(trajectory, duration=duration, sample_rate=sample_rate, seed=None)
 
 
 def generate_dataset(
@@ -103,11 +125,14 @@ def to_dataset(
     p: FrictionParameters,
     *,
     name: str = "s3-twin",
-    uncertain: float = 0.1,
+    uncertain: float = 0.03,
+    friction_known: bool = False,
+    viscous: float | None = None,
     rig: Rig | None = None,
 ) -> Dataset:
     """Records as a library dataset of kind `bowden_pair` whose simulator holds `p`: geometry and the steepness of the
-    gate are known; friction coefficient and threshold have the sd `uncertain` over value that an earlier fit left.
+    gate are known; friction coefficient and threshold have the sd `uncertain` over value that an earlier fit left, or
+    the friction coefficient counts as known too.
 
     Pretension and wrap angle are conditions of each experiment. Only the turn of the sheath enters, not how it is
     spread: its curvature counts as the same from both ends."""
@@ -125,14 +150,17 @@ def to_dataset(
     free = {key: si[key] for key in ("friction_coefficient", "threshold_velocity")}
     parameters = {key: NominalParameter(value=value, sd=0.0, lower=0.0) for key, value in known.items()}
     for key, value in free.items():
-        parameters[key] = NominalParameter(value=value, sd=uncertain * value, lower=0.0)
+        share = 0.0 if friction_known and key == "friction_coefficient" else uncertain
+        parameters[key] = NominalParameter(value=value, sd=share * value, lower=0.0)
+    if viscous is not None:
+        parameters["sheath_viscous"] = NominalParameter(value=viscous, sd=uncertain * viscous, lower=0.0)
     split = [(record, "train") for record in train] + [(record, "test") for record in test]
     return Dataset(
         name=name,
         description="Reconstructed twin of S3: a chain of friction nodes under the paper's trajectories.",
         kind="bowden_pair",
         axis="rotary",
-        nominal_effects=("sheath:capstan",),
+        nominal_effects=("sheath:capstan",) if viscous is None else ("sheath:capstan", "sheath:viscous"),
         parameters=parameters,
         controller=None,
         signals=_signals(),
@@ -161,6 +189,7 @@ def _experiment(record: Record, split: str, index: int) -> Experiment:
         name=f"{index + 1}: {record.name}",
         data=data,
         split=split,
+        repeat=record.name,
         conditions={"pretension": record.pretension, "wrap_angle": record.shape.wrap_angle},
     )
 

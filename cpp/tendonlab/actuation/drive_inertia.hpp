@@ -1,0 +1,30 @@
+#pragma once
+#include "tendonlab/core/law.hpp"
+
+namespace tendonlab::actuation {
+/// Inertia of a drive whose torque was logged before it: what accelerates the drive does not reach the transmission.
+///
+///   u -> u - J dv/dt                                                      (S3 sec. 6, the twin's J_A)
+///
+/// u: effort of the drive, N·m (N). v: its velocity, an input of the system, rad/s (m/s). J: inertia, kg·m² (kg).
+/// J = 0 switches it off. No memory. The system takes the rate from its input; by itself the law changes no signal.
+template <class T>
+struct DriveInertia {
+  static constexpr std::string_view name = "drive_inertia", source = "S3 sec. 6", equation = "u - J dv/dt",
+                                    summary = "inertia of the drive, whose torque was logged before it";
+  static constexpr unsigned roles = 0, sees = sees_nothing;
+  T inertia;
+
+  static constexpr auto parameters() {
+    return std::tuple{parameter(&DriveInertia::inertia, "inertia", Dimension::inertia, Purpose::amplitude, 0.1, 0.0,
+                                inf, "inertia between where the torque is known and the transmission")};
+  }
+  template <class S>
+  S apply(const S& signal) const {
+    return signal;
+  }
+  T lateness() const { return T(0.0); }
+  /// The effort that accelerates it.
+  T reaction(const T& acceleration) const { return inertia * acceleration; }
+};
+}  // namespace tendonlab::actuation

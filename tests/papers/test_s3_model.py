@@ -1,0 +1,209 @@
+"""The forward model of S3 and its twin: sample periods, the compiled system, the chain, the data set."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.papers.s3 import (
+    Chain,
+    Record,
+    Shape,
+    Trajectory,
+    TransmissionCoefficients,
+    bowden_pair,
+    cable_pretension,
+    free_body,
+    generate_dataset,
+    paper_parameters,
+    paper_shape,
+    predict,
+    run_chain,
+    sliding_regression,
+    table_1,
+    weakness,
+)
+from tendonlab.papers.s3.chain import _Equations
+from tendonlab.papers.s3.rig import DEGREE
+
+SOFT = replace(paper_parameters(), s_v=2.0)
+SHAPE = Shape.even(3.6, length=0.8)
+
+
+def drive(rate: float, seconds: float = 4.0) -> tuple[np.ndarray, np.ndarray]:
+    t = np.arange(round(seconds * rate)) / rate
+    return 12.0 * np.sin(2.0 * np.pi * 0.25 * t), 3.0 * np.cos(2.0 * np.pi * 0.25 * t)
+
+
+def test_a_gate_means_the_same_at_another_sample_rate() -> None:
+    """A soft gate leaks: over five periods of the loop it keeps (1 - h)^5. The rest is due to the coarser steps."""
+    fast, slow = (
+        predict(*drive(rate), shape=SHAPE, T_s=264.8, p=SOFT, dt=1.0 / rate, y0=1.0).tau_out for rate in (1000.0, 200.0)
+    )
+    naive = predict(*drive(200.0), shape=SHAPE, T_s=264.8, p=SOFT, dt=0.005, gate_period=0.005, y0=1.0).tau_out
+    error, mistake = (np.max(np.abs(other - fast[::5])) for other in (slow, naive))
+    assert error < 0.5
+    assert mistake > 2.0 * error
+
+
+def test_a_held_output_does_not_drift() -> None:
+    tau, v = np.linspace(0.0, 5.0, 5000), np.full(5000, 0.1)
+    found = predict(tau, v, shape=SHAPE, T_s=264.8, p=paper_parameters(), dt=1e-3, y0=1.25)
+    assert np.all(found.tau_out == 1.25)
+    assert len(found.jumps) == 0
+
+
+def test_jumps_where_the_gate_opens_are_told() -> None:
+    v = np.concatenate([np.full(10, 0.1), np.full(10, 5.0)])
+    found = predict(np.full(20, 10.0), v, shape=SHAPE, T_s=264.8, p=paper_parameters(), dt=1e-3)
+    offset = TransmissionCoefficients.of(SHAPE, mu=0.056, T_s=264.8, r_in=0.05, r_out=0.05).offset
+    np.testing.assert_allclose(found.jumps, [10.0 + offset], rtol=1e-6)
+
+
+def test_units_of_velocity_are_converted() -> None:
+    tau, v = drive(1000.0)
+    degrees = predict(tau, v, shape=SHAPE, T_s=264.8, p=SOFT, dt=1e-3).tau_out
+    radians = predict(tau, v * DEGREE, shape=SHAPE, T_s=264.8, p=SOFT, dt=1e-3, velocity_unit="rad/s").tau_out
+    np.testing.assert_allclose(radians, degrees, rtol=1e-12, atol=1e-12)
+    assert paper_parameters().in_unit("rad/s").s_v == pytest.approx(4.213e6, rel=1e-3)
+
+
+def made_record(rate: float, shape: Shape = SHAPE) -> Record:
+    tau, v = drive(rate)
+    log = pd.DataFrame({"tau_in": tau, "v": v, "tau_out": tau}, index=pd.Index(np.arange(len(tau)) / rate, name="t"))
+    return Record(
+        name="made", shape=shape, load_in=54.0, load_out=54.0, trajectory=Trajectory("sine", 12.0, 4.0), log=log
+    )
+
+
+@pytest.mark.parametrize("rate", [200.0, 1000.0])
+def test_the_compiled_system_is_the_same_law(rate: float) -> None:
+    """One text, two doors: by the shape's samples, and by its wrap angle alone."""
+    record = made_record(rate)
+    inputs = pd.DataFrame({"input_torque": record.log["tau_in"], "input_velocity": DEGREE * record.log["v"]})
+    run = bowden_pair(SOFT, record=record).simulate(inputs).outputs["output_torque"]
+    middle = float(record.log["tau_in"].iloc[0])  # the system starts from the middle of the loop
+    np.testing.assert_allclose(run, record.predict(SOFT, y0=middle).tau_out, rtol=0.0, atol=1e-11)
+
+
+def test_a_skewed_sheath_is_the_same_in_the_system_and_in_the_statics() -> None:
+    record = made_record(1000.0, Shape.skewed(3.6, length=0.8, skew=0.7, num_samples=20001))
+    inputs = pd.DataFrame({"input_torque": record.log["tau_in"], "input_velocity": DEGREE * record.log["v"]})
+    system = bowden_pair(SOFT, record=record).with_effects({"sheath:curvature_skew": {"curvature_skew": 0.7}})
+    run = system.simulate(inputs).outputs["output_torque"]
+    np.testing.assert_allclose(run, record.predict(SOFT).tau_out, rtol=0.0, atol=1e-8)  # the shape is sampled
+
+
+def test_slack_and_lost_pretension_do_what_they_say() -> None:
+    """Sliding fast: the offset grows by |tau|/(2 r T_s) above 1, and with the pretension that is left."""
+    record = made_record(200.0)
+    tau, ones = np.array([10.0, 20.0, 40.0]), np.ones(3)
+    inputs = pd.DataFrame({"input_torque": tau, "input_velocity": ones}, index=pd.Index([0.0, 1.0, 2.0], name="t"))
+    plain, limit = bowden_pair(paper_parameters(), record=record), 2.0 * 0.05 * record.pretension
+
+    def friction(system: object) -> np.ndarray:
+        return np.asarray(tau - system.simulate(inputs).outputs["output_torque"].to_numpy())  # type: ignore[attr-defined]
+
+    base = friction(plain)
+    slack = friction(plain.with_effects({"sheath:slack": {"slack": 1.0}}))
+    np.testing.assert_allclose(slack, base * np.maximum(1.0, tau / limit), rtol=1e-12)
+    less = {"sheath:pretension_loss": {"pretension_loss": 0.2}}
+    np.testing.assert_allclose(friction(plain.with_effects(less)), 0.8 * base, rtol=1e-12)
+    both = friction(plain.with_effects({**less, "sheath:slack": {"slack": 1.0}}))
+    np.testing.assert_allclose(both, 0.8 * base * np.maximum(1.0, tau / (0.8 * limit)), rtol=1e-12)
+
+
+def test_spread_presliding_is_a_play_in_torque() -> None:
+    """Whatever the velocity says, the output is held until the friction has turned over."""
+    record = made_record(200.0)
+    t = np.linspace(0.0, 1.0, 401)
+    tau = 20.0 * np.sin(2.0 * np.pi * t) + 6.0 * np.sin(14.0 * np.pi * t)
+    inputs = pd.DataFrame({"input_torque": tau, "input_velocity": np.cos(t)}, index=pd.Index(t, name="t"))
+    same = replace(paper_parameters(), mu_s=paper_parameters().mu_d)  # one level at all speeds
+    system = bowden_pair(same, record=record).with_effects(
+        {"sheath:distributed_presliding": {"distributed_share": 1.0}}
+    )
+    level = -TransmissionCoefficients.of(SHAPE, mu=0.056, T_s=record.pretension, r_in=0.05, r_out=0.05).offset
+    held, expected = 0.0, []
+    for torque in tau:
+        held = min(max(held, torque - level), torque + level)
+        expected.append(held)
+    np.testing.assert_allclose(system.simulate(inputs).outputs["output_torque"], expected, rtol=0.0, atol=1e-12)
+
+
+def test_pretension_and_free_body() -> None:
+    assert free_body(529.5591) == pytest.approx((264.77955, 264.77955), rel=1e-12)
+    assert cable_pretension(54.0) == pytest.approx(264.77955, rel=1e-12)
+    assert sum(free_body(500.0, guide_force=20.0)) + 20.0 == pytest.approx(500.0)
+
+
+def test_the_jacobian_of_the_chain_is_that_of_its_rate() -> None:
+    rng = np.random.default_rng(1)
+    for slack in (False, True):
+        chain = Chain(shape=paper_shape(3), pretension=100.0, slack=slack, num_nodes=4)
+        of = _Equations.of(chain, Trajectory("sine", 15.0, 10.0))
+        y = rng.normal(0.0, 1e-3, of.size)
+        exact = of.jacobian(0.3, y)
+        for k in range(of.size):
+            step = np.zeros(of.size)
+            step[k] = 1e-8
+            numeric = (of.rate(0.3, y + step) - of.rate(0.3, y - step)) / 2e-8
+            np.testing.assert_allclose(exact[:, k], numeric, rtol=1e-5, atol=1e-5 * np.max(np.abs(exact)))
+
+
+def test_two_steppers_agree_on_the_chain() -> None:
+    chain, torque = Chain(shape=paper_shape(6), pretension=cable_pretension(54.0)), Trajectory("sine", 15.0, 4.0)
+    one, other = (chain.simulate(torque, duration=4.0, seed=None, method=name) for name in ("LSODA", "BDF"))
+    assert np.max(np.abs(one["tau_out"] - other["tau_out"])) < 2e-3  # of 15 N·m, at the tolerance of the twin
+    assert np.max(np.abs(one["v"] - other["v"])) < 0.02
+
+
+def test_the_chain_s_friction_adds_up_to_the_model_s_offset() -> None:
+    chain = Chain(shape=paper_shape(4), pretension=200.0)
+    law = TransmissionCoefficients.of(paper_shape(4), mu=0.056, T_s=200.0, r_in=0.05, r_out=0.05)
+    assert np.sum(_Equations.of(chain, Trajectory("sine", 1.0, 1.0)).level) == pytest.approx(-law.offset, rel=1e-12)
+
+
+def test_a_group_has_the_four_trajectories_of_table_1() -> None:
+    records = generate_dataset([(8, 30.0)], duration=1.0)
+    assert [record.trajectory for record in records] == list(table_1())
+    assert [round(t.period) for t in table_1()] == [5, 7, 10, 10]
+    assert {record.pretension for record in records} == {cable_pretension(30.0)}
+
+
+def test_repeats_differ_by_noise_alone() -> None:
+    one, other, exact = (run_chain(8, 30.0, table_1()[0], duration=1.0, seed=seed) for seed in (1, 2, None))
+    assert not one.log["tau_out"].equals(other.log["tau_out"])
+    spread = np.std([one.log["tau_out"] - exact.log["tau_out"], other.log["tau_out"] - exact.log["tau_out"]])
+    assert spread == pytest.approx(0.15, rel=0.15)
+
+
+def test_data_tell_two_of_the_five_numbers() -> None:
+    p = paper_parameters()
+    record = run_chain(6, 54.0, Trajectory("sine", 15.0, 10.0))
+    log = record.log.assign(
+        tau_out=record.predict(p).tau_out + np.random.default_rng(3).normal(0.0, 0.15, len(record.log))
+    )
+    told = weakness([replace(record, log=log)], p)
+    assert list(told.index[told["identified"]]) == ["mu_d", "v_thres"]
+
+
+def test_bad_input_is_named() -> None:
+    with pytest.raises(ParameterError, match="velocity_unit = 'rpm': expected one of deg/s, rad/s"):
+        replace(paper_parameters(), velocity_unit="rpm")
+    with pytest.raises(ParameterError, match="kind = 'square'"):
+        Trajectory("square", 1.0, 1.0)
+    with pytest.raises(ParameterError, match=r"dt = 0\.0"):
+        predict(np.zeros(2), np.zeros(2), shape=SHAPE, T_s=1.0, p=SOFT, dt=0.0)
+    with pytest.raises(ParameterError, match="turning"):
+        Shape(np.array([0.0, 1.0]), np.array([0.0, -1.0]))
+    with pytest.raises(ParameterError, match="shape = 11: expected 1"):
+        paper_shape(11)
+    with pytest.raises(ParameterError, match="pretension_profile = 'flat'"):
+        TransmissionCoefficients.of(SHAPE, mu=0.1, T_s=1.0, r_in=0.1, r_out=0.1, pretension_profile="flat")
+    with pytest.raises(DatasetError, match="fewer than 20 samples"):
+        sliding_regression(made_record(200.0), v_thres=10.0)
