@@ -8,7 +8,7 @@ from importlib import import_module
 
 import numpy as np
 
-from tendonlab.catalog import system_info
+from tendonlab.catalog import LEVEL, MEMORY, SystemInfo, system_info
 from tendonlab.system import System
 
 T = np.linspace(0.0, 1.0, 201)
@@ -38,11 +38,22 @@ def example(kind: str) -> Example:
 def with_effect(kind: str, effect: str, *, off: bool = False) -> System:
     """The nominal system with `effect`, its parameters at their typical values, or its amplitudes at 0."""
     info, of = system_info(kind), example(kind)
+    effects = [*info.default_nominal_effects, *of.effects]
+    effects += [name for name in (*_ground(info, effect), effect) if name not in effects]
     values = {}
-    for name in info.effect(effect).parameters:
-        row = info.parameter(name)
-        typical = row.typical * of.scale(row.element or "", row.dimension)
-        values[name] = 0.0 if off and row.amplitude else of.parameters.get(name, typical)
-    nominal = (*info.default_nominal_effects, *of.effects)
-    effects = nominal if effect in nominal else (*nominal, effect)
-    return System(kind=kind, parameters={**of.parameters, **values}, effects=effects)
+    for added in effects:
+        for name in info.effect(added).parameters:
+            row = info.parameter(name)
+            if name in of.parameters and not (off and added == effect):
+                continue
+            typical = row.typical * (1.0 if row.purpose == "share" else of.scale(row.element or "", row.dimension))
+            values[name] = 0.0 if off and added == effect and row.amplitude else of.parameters.get(name, typical)
+    return System(kind=kind, parameters={**of.parameters, **values}, effects=tuple(effects))
+
+
+def _ground(info: SystemInfo, effect: str) -> tuple[str, ...]:
+    """A level of dry friction for an effect that only shapes one, where the nominal system has none there."""
+    of = info.effect(effect)
+    if not of.roles & MEMORY or any(info.effect(name).element == of.element for name in info.default_nominal_effects):
+        return ()
+    return (next(e.name for e in info.effects if e.element == of.element and e.roles & LEVEL),)

@@ -29,7 +29,7 @@ class Recorder {
     const double reached = start + taken + 1e-12 * (1.0 + std::fabs(start)), per_length = 1.0 / length;
     if (!late) {
       for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
-        const Y y = state(s, T((time[next[0]] - start) * per_length), time[next[0]]);
+        const Y y = state(s, T((time[next[0]] - start) * per_length), T(time[next[0]]));
         auto coupling = couple(y, frame, in);
         const auto seen = observe(y, coupling);
         for (std::size_t c = 0; c < channels; ++c) write(c, next[0], system.sensor[c].apply(seen[c]));
@@ -38,23 +38,24 @@ class Recorder {
     } else {
       for (std::size_t c = 0; c < channels; ++c)
         for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
-          const T share = (time[next[c]] - start - delay[c]) * per_length;
-          const Y y = state(s, plain(share) > 0 ? share : T(0.0), time[next[c]] - plain(delay[c]));
+          const T then = time[next[c]] - delay[c], share = (then - start) * per_length;
+          const bool begun = plain(share) > 0;  // before the record all was as at its start
+          const Y y = state(s, begun ? share : T(0.0), begun ? then : T(start));
           auto coupling = couple(y, frame, in);
           write(c, next[c], system.sensor[c].apply(observe(y, coupling)[c]));
         }
     }
     if (!records_ports || !late) return;  // ports have no sensors
     for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {
-      const Y y = state(s, T((time[next_port] - start) * per_length), time[next_port]);
+      const Y y = state(s, T((time[next_port] - start) * per_length), T(time[next_port]));
       write_ports(next_port, y, couple(y, frame, in)(), frame, in);
     }
   }
 
  private:
-  static Y state(const Step<Y>& s, const T& share, double now) {
+  static Y state(const Step<Y>& s, const T& share, const T& now) {
     Y y = s.at(share);
-    y.at.time = T(now);
+    y.at.time = now;
     return y;
   }
   /// What the ports see at `y`, worked out when it is first asked for: most outputs do without.

@@ -114,15 +114,17 @@ class Simulation {
 
   /// By how much the next step may grow (> 0), or minus the factor by which this one must shrink.
   double growth(const Step<Y>& s) const {
+    constexpr int judged = systems::stated<System>;
     double sum = 0;
     for (std::size_t j = 0; j < n; ++j) {
       const auto one = [](const T& error, const T& from, const T& to, double scale) {
         return square(plain(error) / (scale + std::max(std::fabs(plain(from)), std::fabs(plain(to)))));
       };
       sum += one(s.error.at.position[j], y.at.position[j], s.to.at.position[j], settings.position_scale);
-      sum += one(s.error.at.velocity[j], y.at.velocity[j], s.to.at.velocity[j], settings.velocity_scale);
+      if (j < judged)
+        sum += one(s.error.at.velocity[j], y.at.velocity[j], s.to.at.velocity[j], settings.velocity_scale);
     }
-    int counted = 2 * n;
+    int counted = n + judged;
     unroll<slots<System>>([&](auto i) {
       if constexpr (SlotOf<System, i>::states > 0) {
         const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);

@@ -95,7 +95,8 @@ template <class System, class = void>
 struct StatedOf : std::integral_constant<int, System::dof> {};
 template <class System>
 struct StatedOf<System, std::enable_if_t<(System::stated > 0)>> : std::integral_constant<int, System::stated> {};
-/// The degrees of freedom whose initial state an experiment states; `begin` of the system places those after them.
+/// The degrees of freedom whose initial state an experiment states. Those after them have next to no inertia: `begin`
+/// of the system places them, and their velocities, which follow the forces at once, are not judged step by step.
 template <class System>
 inline constexpr int stated = StatedOf<System>::value;
 

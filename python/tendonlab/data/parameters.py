@@ -102,7 +102,8 @@ def _assume(table: Table, parameter: Parameter, info: SystemInfo) -> NominalPara
     """What an absent value means: that part of the simulator is not there, or is as the table has it."""
     structural = {effect.name for effect in info.effects if effect.structural}
     own = parameter.effect is None or not structural.isdisjoint(_effects_with(parameter, info))
-    absolute = parameter.purpose in ("shape", "share") and parameter.dimension in ("ratio", "time")
+    counted = parameter.purpose == "shape" and parameter.dimension in ("ratio", "time")
+    absolute = counted or parameter.purpose == "share"
     if parameter.purpose == "condition" or (own and (parameter.typical == 0.0 or parameter.name == "torque_constant")):
         value, known = parameter.typical, True
     elif not own and absolute:

@@ -119,7 +119,9 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
     for c in case.measured:
         ar[c], innovation = _autoregression([d[c] for d, _ in pairs])
         sd[c] = max(innovation, 0.3 * float(case.noise[c]))
-        rms[c] = _rms([d[c] for d in differences])
+        rms[c] = max(
+            _rms([d[c] for d in differences]), 0.3 * float(case.noise[c])
+        )  # coarse readings may repeat exactly
     return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
 
 

@@ -17,7 +17,6 @@ from tendonlab.papers.s4.constants import (
     identified,
     joint,
 )
-from tendonlab.papers.s4.line_contact import LineContactLuGre
 from tendonlab.papers.s4.dataset import Nominal, nominal, softer, write_rig
 from tendonlab.papers.s4.drive import Drive, printed_drive
 from tendonlab.papers.s4.dynamic import identify_dynamic
@@ -28,10 +27,11 @@ from tendonlab.papers.s4.identification import (
     identify_stiffness,
     pointwise_stiffness,
 )
+from tendonlab.papers.s4.library import simulate, simulator
+from tendonlab.papers.s4.line_contact import LineContactLuGre
 from tendonlab.papers.s4.metrics import dwell, error_levels, loop_width, nrmse, spread, synchronous_error
 from tendonlab.papers.s4.play import capstan_play, saturation
 from tendonlab.papers.s4.rig import Case, case, cases, measured, run_rig
-from tendonlab.papers.s4.library import simulate, simulator
 from tendonlab.papers.s4.statics import (
     Tensions,
     WrapAngles,

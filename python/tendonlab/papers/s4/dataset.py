@@ -13,14 +13,15 @@ from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.rig import NOISE, Case, measured, run_rig
 from tendonlab.papers.s4.twin import TENSIONS
 
-SAMPLE_STEP = 5  # every fifth sample of 1 kHz: 200 Hz
-SOFT_START = 0.2  # s
+SAMPLE_STEP = 10  # every tenth sample of 1 kHz: 100 Hz
+SOFT_START, EASE = 0.5, 2  # s: what is differentiated must not jump at the start of a record
+JITTER = 0.5 * RESOLUTION  # rad: without it repeats of a twin would repeat to the last bit
 MOTIONS = (  # name, amplitude (deg), period (s), repeat, split
-    ("slow", 10.0, 8.0, "", "train"),
+    ("slow", 10.0, 6.0, "", "train"),
     ("printed-a", 10.0, 4.0, "A", "train"),
     ("printed-b", 10.0, 4.0, "A", "train"),
     ("small", 6.0, 3.0, "", "train"),
-    ("held-out-slow", 8.0, 6.0, "", "test"),
+    ("held-out-slow", 8.0, 5.0, "", "test"),
     ("held-out-fast", 9.0, 3.5, "", "test"),
 )
 
@@ -42,7 +43,7 @@ def nominal(*, knows_direction: bool) -> Nominal:
 
 
 def write_rig(
-    folder: Path | str, of: Case, believed: Nominal, *, name: str, duration: float = 8.0, seed: int = 0
+    folder: Path | str, of: Case, believed: Nominal, *, name: str, duration: float = 6.0, seed: int = 0
 ) -> Path:
     """Record six motions of the twin `of` from rest into a new `folder` as a dataset (FORMATS section 1) that `tl.load`
     reads, whose simulator is `believed`; returns the folder. Same seed, same noise."""
@@ -51,10 +52,12 @@ def write_rig(
     rng = np.random.default_rng(seed)
     runs: dict[tuple[float, float], pd.DataFrame] = {}
     for label, amplitude, period, *_ in MOTIONS:
-        drive = Drive(amplitude=float(np.deg2rad(amplitude)), omega=2 * np.pi / period, soft_start=SOFT_START)
+        drive = Drive(
+            amplitude=float(np.deg2rad(amplitude)), omega=2 * np.pi / period, soft_start=SOFT_START, ease=EASE
+        )
         if (amplitude, period) not in runs:
-            runs[amplitude, period] = run_rig(of, drive=drive, duration=duration)
-        read = measured(runs[amplitude, period], seed=rng).iloc[::SAMPLE_STEP]
+            runs[amplitude, period] = run_rig(of, drive=drive, duration=duration, rtol=1e-7)
+        read = measured(runs[amplitude, period], seed=rng, jitter=JITTER).iloc[::SAMPLE_STEP]
         columns = {"theta2": "driver_angle", "theta1": "joint_angle", **{T: f"tension_{T[1:]}" for T in TENSIONS}}
         read.rename(columns=columns)[list(columns.values())].to_csv(path / f"{label}.csv", float_format="%.9g")
     (path / "dataset.toml").write_text(_toml(of, believed, name), encoding="utf-8")

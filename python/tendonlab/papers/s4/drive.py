@@ -13,13 +13,15 @@ from tendonlab.papers.tables import table
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """theta_2(t) = A sin(omega t), times 1 - exp(-t / soft_start) where that is not 0.
+    """theta_2(t) = A sin(omega t), times 1 - exp(-(t / soft_start)^ease) where soft_start is not 0.
 
-    `amplitude` A, rad; `omega`, rad/s; `soft_start`, s: without it the rate jumps at t = 0 and joint 1 rings."""
+    `amplitude` A, rad; `omega`, rad/s; `soft_start`, s: without it the rate jumps at t = 0 and joint 1 rings; with an
+    `ease` of 1 the acceleration still does, with 2 it does not."""
 
     amplitude: float
     omega: float
     soft_start: float = 0.0
+    ease: int = 1
 
     def angle(self, t: Any) -> Any:
         """theta_2, rad, at time t, s: a number or an array."""
@@ -29,7 +31,8 @@ class Drive:
         """Its rate, rad/s."""
         rate = self.amplitude * self.omega * np.cos(self.omega * t) * self._share(t)
         if self.soft_start > 0:
-            grows = np.exp(-t / self.soft_start) / self.soft_start
+            s = t / self.soft_start
+            grows = self.ease * s ** (self.ease - 1) * np.exp(-(s**self.ease)) / self.soft_start
             rate = rate + self.amplitude * np.sin(self.omega * t) * grows
         return rate
 
@@ -43,7 +46,7 @@ class Drive:
         return np.array([brentq(self.rate, t[i], t[i + 1], xtol=1e-15) for i in turns])
 
     def _share(self, t: Any) -> Any:
-        return 1.0 - np.exp(-t / self.soft_start) if self.soft_start > 0 else 1.0
+        return 1.0 - np.exp(-((t / self.soft_start) ** self.ease)) if self.soft_start > 0 else 1.0
 
 
 def printed_drive(*, period: float | None = None, soft_start: float = 0.0) -> Drive:

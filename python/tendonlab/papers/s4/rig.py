@@ -82,10 +82,17 @@ def run_rig(of: Case, *, drive: Drive | None = None, duration: float = DURATION,
     return of.model().simulate(printed_drive() if drive is None else drive, time, rtol=rtol)
 
 
-def measured(run: pd.DataFrame, *, seed: int | np.random.Generator = 0, noise: float = NOISE) -> pd.DataFrame:
-    """What the rig's sensors read of a run: both encoders with 17 bit, theta1 and theta2, rad; six tensions, N."""
+def measured(
+    run: pd.DataFrame, *, seed: int | np.random.Generator = 0, noise: float = NOISE, jitter: float = 0.0
+) -> pd.DataFrame:
+    """What the rig's sensors read of a run: both encoders with 17 bit, theta1 and theta2, rad; six tensions, N.
+
+    `noise`, N: sd of a tension sensor; `jitter`, rad: sd of what shakes the encoders before they round."""
     rng = np.random.default_rng(seed)
-    read = pd.DataFrame({name: RESOLUTION * np.round(run[name] / RESOLUTION) for name in ("theta1", "theta2")})
+    read = pd.DataFrame(index=run.index)
+    for name in ("theta1", "theta2"):
+        shaken = run[name] + (jitter * rng.standard_normal(len(run)) if jitter > 0 else 0.0)
+        read[name] = RESOLUTION * np.round(shaken / RESOLUTION)
     for name in TENSIONS:
         read[name] = run[name] + noise * rng.standard_normal(len(run))
     return read
