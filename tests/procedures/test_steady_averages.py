@@ -96,7 +96,7 @@ def test_a_plateau_without_its_opposite_is_named() -> None:
     with pytest.raises(ParameterError, match=r"velocity = 3 about 14 s: expected a plateau at the opposite speed"):
         steady_averages(TIME[cut], VELOCITY[cut], TORQUE[cut], position=POSITION[cut])
     elsewhere = POSITION + np.where(TIME > 5.5, 20.0, 0.0) + np.where(TIME > 11.0, -20.0, 0.0)
-    with pytest.raises(ParameterError, match=r"velocity = 1 about 3 s: expected .* passes the same positions"):
+    with pytest.raises(ParameterError, match=r"velocity = 1 about 3.* s: expected .* passes the same positions"):
         steady_averages(TIME, VELOCITY, TORQUE, position=elsewhere)
 
 
