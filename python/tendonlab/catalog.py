@@ -57,7 +57,8 @@ Named = TypeVar("Named", Parameter, Effect)
 
 @dataclass(frozen=True)
 class Signal:
-    """An input or output; `axis` is the degree of freedom whose position it is, None for anything else."""
+    """An input or output; `axis` is the degree of freedom whose position it is, None for anything else. `between`: what
+    an input is between its samples, "hold", "linear" or "smooth"; `unless`: an input that takes its place if logged."""
 
     name: str
     dimension: str
@@ -65,11 +66,22 @@ class Signal:
     hold: bool
     meaning: str
     axis: int | None
+    between: str
+    unless: str | None
+
+
+@dataclass(frozen=True)
+class Port:
+    """Where a slot sits; ports of one element carry the same laws."""
+
+    name: str
+    element: str
 
 
 @dataclass(frozen=True)
 class SystemInfo:
-    """Everything a system states about itself."""
+    """Everything a system states about itself. `commanded`: input 0 is the command of an actuator; `sampled`: outputs
+    follow sample by sample, without a differential equation; `element_axes`: of elements with an axis of their own."""
 
     kind: str
     equation: str
@@ -79,8 +91,11 @@ class SystemInfo:
     parameters: tuple[Parameter, ...]
     effects: tuple[Effect, ...]
     elements: tuple[str, ...]
-    ports: tuple[str, ...]
+    element_axes: dict[str, str]
+    ports: tuple[Port, ...]
     default_nominal_effects: tuple[str, ...]
+    commanded: bool
+    sampled: bool
 
     def parameter(self, name: str) -> Parameter:
         """The row of that name; ParameterError, with the nearest name, where there is none."""
@@ -113,9 +128,12 @@ def system_info(kind: str) -> SystemInfo:
             for p in raw["parameters"]
         ),
         effects=tuple(Effect(**{**e, "parameters": tuple(e["parameters"])}) for e in raw["effects"]),
-        elements=tuple(raw["elements"]),
-        ports=tuple(raw["ports"]),
+        elements=tuple(name for name, _ in raw["elements"]),
+        element_axes={name: axis for name, axis in raw["elements"] if axis},
+        ports=tuple(Port(name, element) for name, element in raw["ports"]),
         default_nominal_effects=tuple(raw["nominal"]),
+        commanded=raw["commanded"],
+        sampled=raw["sampled"],
     )
 
 
@@ -129,9 +147,10 @@ def unit(dimension: str, axis: str) -> str:
 
 
 def parameter_unit(info: SystemInfo, parameter: Parameter, axis: str) -> str:
-    """Unit of a parameter; that of a sensor's bias is its signal's."""
+    """Unit of a parameter of a system on `axis`, or of its element on an axis of its own; a sensor's bias has its
+    signal's."""
     if parameter.dimension != "output":
-        return unit(parameter.dimension, axis)
+        return unit(parameter.dimension, info.element_axes.get(parameter.element or "", axis))
     signal = (parameter.element or "").removeprefix("sensor.")
     return unit(next(s.dimension for s in info.outputs if s.name == signal), axis)
 
@@ -150,9 +169,11 @@ def _signal(raw: dict[str, object]) -> Signal:
         name=str(raw["name"]),
         dimension=dimension,
         required=bool(raw["required"]),
-        hold=dimension in ("effort", "command"),  # what a drive holds between samples; angles and speeds move on
+        hold=raw["between"] == "hold",
         meaning=str(raw["meaning"]),
         axis=axis if isinstance(axis, int) and axis >= 0 else None,
+        between=str(raw["between"]),
+        unless=str(raw["unless"]) or None,
     )
 
 

@@ -19,7 +19,8 @@ def bundled(name: str = NAME) -> Path:
 
     Raises DatasetError where the package carries none of that name."""
     root = files("tendonlab").joinpath("bundled")
-    carried = sorted(item.name for item in root.iterdir()) if root.is_dir() else []
+    datasets = (item for item in root.iterdir() if item.joinpath("dataset.toml").is_file()) if root.is_dir() else ()
+    carried = sorted(item.name for item in datasets)
     if name not in carried:
         known = f"expected one of {', '.join(carried)}" if carried else "this installation carries none; reinstall it"
         raise DatasetError(f"bundled dataset {name!r}: {known}")

@@ -90,11 +90,14 @@ def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
     ]
     ports = np.concatenate([r["ports"] for r in runs], axis=2)
     found: dict[str, Scale] = {}
-    for i, name in enumerate(info.ports):
+    for i, port in enumerate(info.ports):
         velocity, position, load, force = ports[i]
-        effort = max(_rms(load), _rms(force))
-        found[name] = Scale(_positive(effort), _positive(_rms(velocity)), _positive(float(np.std(position))))
-    first = found[info.ports[0]]
+        seen = (max(_rms(load), _rms(force)), _rms(velocity), float(np.std(position)))
+        known = found.get(port.element, Scale(0.0, 0.0, 0.0))
+        most = (max(a, b) for a, b in zip(seen, (known.effort, known.flow, known.displacement), strict=True))
+        found[port.element] = Scale(*most)
+    found = {name: Scale(*map(_positive, (s.effort, s.flow, s.displacement))) for name, s in found.items()}
+    first = found[info.ports[0].element]
     for c, output in enumerate(info.outputs):
         measured = np.concatenate([e.measured[c] for e in experiments])
         spread = float(np.nanstd(measured)) if np.isfinite(measured).any() else 1.0

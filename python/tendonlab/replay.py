@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from tendonlab.system import System
 
 KINDS = ("auto", "controller", "injection", "free")
-LINEAR_INPUTS = ("angle", "velocity")
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ def choose(dataset: Dataset, system: System) -> Replay:
     if controller is not None:
         return Replay("controller", controller.kp, controller.kd, controller.measured)
     first = next((s.name for s in system.info.outputs if s.axis == 0), None)
-    if first is None or first not in dataset.outputs:
+    if first is None or first not in dataset.outputs or not system.info.commanded:
         return Replay("free")
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
     rates = [2 * np.pi * _frequency_below(e.time, e.data[first].to_numpy()) for e in dataset.train]
@@ -135,7 +134,7 @@ def simulate(
 
 def _port_frame(ports: np.ndarray, system: System, index: pd.Index) -> pd.DataFrame:
     seen = ("velocity", "position", "load", "force")
-    columns = pd.MultiIndex.from_product([system.info.ports, seen], names=["port", "quantity"])
+    columns = pd.MultiIndex.from_product([[p.name for p in system.info.ports], seen], names=["port", "quantity"])
     return pd.DataFrame(ports.reshape(-1, ports.shape[-1]).T, index=index, columns=columns)
 
 
@@ -146,8 +145,9 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
         if given.name in data.columns:
             values = data[given.name].to_numpy(dtype=float)
             held = experiment.holds.get(given.name, given.hold)
-            signals.append(hold(time, values) if held else linear(time, values))
-        elif given.required and not (k == 0 and replay.kind == "controller"):
+            between = hold if held else smoothed if given.between == "smooth" else linear
+            signals.append(between(time, values))
+        elif given.required and given.unless not in data.columns and not (k == 0 and replay.kind == "controller"):
             raise DatasetError(
                 f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it"
             )

@@ -70,7 +70,7 @@ def _dotted(values: Mapping[str, float]) -> dict[str, float]:
 def run(
     system: System,
     time: np.ndarray,
-    command: np.ndarray | float = 0.0,
+    command: np.ndarray | float | Mapping[str, np.ndarray] = 0.0,
     *,
     known: np.ndarray | float | None = None,
     kind: str = "smooth",
@@ -84,9 +84,12 @@ def run(
     max_attempts: int = 200_000,
     keep_zero: bool = False,
 ) -> Run:
-    """Simulate `system` under a command (and a known torque) given at `time`, `kind` "hold", "linear" or "smooth"."""
+    """Simulate `system` under a command (and a known torque), or inputs by name, given at `time`, `kind` "hold",
+    "linear" or "smooth" between them."""
     info = system.info
-    signals = [_signal(time, command, kind), _core.Signal() if known is None else _signal(time, known, kind)]
+    first = {info.inputs[0].name: command} | ({} if known is None else {info.inputs[1].name: known})
+    given = command if isinstance(command, Mapping) else first
+    signals = [_signal(time, given[s.name], kind) if s.name in given else _core.Signal() for s in info.inputs]
     experiment = _core.Experiment(
         kind=system.kind,
         time=time.tolist(),
@@ -104,7 +107,7 @@ def run(
     return Run(
         outputs=dict(zip([s.name for s in info.outputs], done["outputs"], strict=True)),
         gradient=dict(zip(by, done["gradient"], strict=True)) if by else {},
-        ports=dict(zip(info.ports, done["ports"], strict=True)) if ports else {},
+        ports=dict(zip([p.name for p in info.ports], done["ports"], strict=True)) if ports else {},
         attempts=done["attempts"],
         rejected=done["rejected"],
         events=done["events"],

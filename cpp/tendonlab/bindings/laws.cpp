@@ -113,12 +113,13 @@ std::string represent(const L& law) {
 
 /// What a law sees in a port of its own: the modes that a stepper would hold follow from the motion, 0 at rest.
 template <class L>
-Sliding<double> seen(const L* law, double velocity, double position, double load) {
+Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0) {
   constexpr double largest = std::numeric_limits<double>::max();
   require_within("velocity", velocity, -largest, largest, both_units(Dimension::flow));
   require_within("position", position, -largest, largest, both_units(Dimension::displacement));
   require_within("load", load, -largest, largest, both_units(Dimension::effort));
-  Sliding<double> at{velocity, position, load, static_cast<double>((velocity > 0) - (velocity < 0)), 0.0};
+  require_within("wrap_angle", wrap, -largest, largest, "rad");
+  Sliding<double> at{velocity, position, load, static_cast<double>((velocity > 0) - (velocity < 0)), 0.0, wrap};
   if constexpr (plays<L>(role::motion)) {
     const double half_gap = law->half_gap();
     at.side = static_cast<double>((position > half_gap) - (position < -half_gap));
@@ -127,26 +128,27 @@ Sliding<double> seen(const L* law, double velocity, double position, double load
 }
 
 using pybind11::arg;
-#define TENDONLAB_AT py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0
+#define TENDONLAB_AT \
+  py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0, arg("wrap_angle") = 0.0
 
 template <class L, class Class>
 void bind_dry(Class& law) {
   if constexpr (plays<L>(role::level))
-    law.def("level", py::vectorize(+[](const L* of, double velocity, double position, double load) {
-              return of->level(seen(of, velocity, position, load));
+    law.def("level", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
+              return of->level(seen(of, velocity, position, load, wrap));
             }),
             TENDONLAB_AT, "Its share of the dry friction level, a magnitude, N*m or N.");
   if constexpr (plays<L>(role::factor))
-    law.def("factor", py::vectorize(+[](const L* of, double velocity, double position, double load) {
-              return of->factor(seen(of, velocity, position, load));
+    law.def("factor", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
+              return of->factor(seen(of, velocity, position, load, wrap));
             }),
             TENDONLAB_AT, "What it multiplies the dry friction level by, 1.");
 }
 template <class L, class Class>
 void bind_force(Class& law) {
   if constexpr (!plays<L>(role::memory) && plays<L>(role::level | role::force))
-    law.def("force", py::vectorize(+[](const L* of, double velocity, double position, double load) {
-              const auto at = seen(of, velocity, position, load);
+    law.def("force", py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap) {
+              const auto at = seen(of, velocity, position, load, wrap);
               double sum = 0;
               if constexpr (plays<L>(role::level)) sum += at.direction * of->level(at);
               if constexpr (plays<L>(role::force)) sum += of->force(at);
@@ -155,7 +157,7 @@ void bind_force(Class& law) {
             TENDONLAB_AT,
             "Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest. velocity in "
             "rad/s\n"
-            "or m/s, position in rad or m, load in N*m or N; arrays broadcast.");
+            "or m/s, position in rad or m, load in N*m or N, wrap_angle in rad; arrays broadcast.");
 }
 template <class L, class Class>
 void bind_memory(Class& law) {

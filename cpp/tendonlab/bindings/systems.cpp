@@ -11,7 +11,7 @@ using integrate::Signal;
 py::dict signal_info(const SignalInfo& s) {
   return py::dict(py::arg("name") = s.name, py::arg("meaning") = s.meaning,
                   py::arg("dimension") = words(s.dimension).name, py::arg("required") = s.required,
-                  py::arg("axis") = s.axis);
+                  py::arg("axis") = s.axis, py::arg("between") = s.between, py::arg("unless") = s.unless);
 }
 py::dict parameter_info(const ParameterInfo& p) {
   return py::dict(py::arg("name") = p.name, py::arg("element") = p.element, py::arg("effect") = p.effect,
@@ -37,7 +37,9 @@ py::dict system_info(const std::string& kind) {
       py::arg("kind") = s.kind, py::arg("equation") = s.equation, py::arg("dof") = s.dof,
       py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
       py::arg("parameters") = listed(s.parameters, parameter_info), py::arg("effects") = listed(s.effects, effect_info),
-      py::arg("elements") = s.elements, py::arg("ports") = s.ports, py::arg("nominal") = s.nominal);
+      py::arg("elements") = listed(s.elements, [](const ElementInfo& e) { return py::make_tuple(e.name, e.axis); }),
+      py::arg("ports") = listed(s.ports, [](const PortInfo& p) { return py::make_tuple(p.name, p.element); }),
+      py::arg("nominal") = s.nominal, py::arg("commanded") = s.commanded, py::arg("sampled") = s.sampled);
 }
 
 Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
@@ -52,6 +54,7 @@ Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
   for (std::size_t i = 0; i < pieces; ++i)
     for (std::size_t k = 0; k < 4; ++k) s.coefficients[i][k] = coefficients.data()[4 * i + k];
   s.join();
+  s.gather();
   return s;
 }
 

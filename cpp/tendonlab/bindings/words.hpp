@@ -17,7 +17,22 @@ inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
                                                      {"time", "s", "s"},
                                                      {"command", "N*m", "N"},
                                                      {"effort_per_command", "N*m", "N"},
-                                                     {"output", "unit of its signal", "unit of its signal"}};
+                                                     {"output", "unit of its signal", "unit of its signal"},
+                                                     {"force", "N", "N"},
+                                                     {"length", "m", "m"},
+                                                     {"speed", "m/s", "m/s"},
+                                                     {"line_stiffness", "N/m", "N/m"},
+                                                     {"line_damping", "N*s/m", "N*s/m"},
+                                                     {"mass", "kg", "kg"},
+                                                     {"angle", "rad", "rad"},
+                                                     {"angular_speed", "rad/s", "rad/s"},
+                                                     {"torque", "N*m", "N*m"},
+                                                     {"voltage", "V", "V"},
+                                                     {"current", "A", "A"},
+                                                     {"resistance", "ohm", "ohm"},
+                                                     {"inductance", "H", "H"},
+                                                     {"torque_per_current", "N*m/A", "N*m/A"},
+                                                     {"acceleration", "m/s^2", "m/s^2"}};
 inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape"};
 
 inline const DimensionWords& words(Dimension dimension) {

@@ -110,6 +110,24 @@ TENDONLAB_DUAL sin(const Dual<T, n>& a) {
 TENDONLAB_DUAL cos(const Dual<T, n>& a) {
   return chain(T(cos(a.value)), T(-sin(a.value)), a);
 }
+TENDONLAB_DUAL log(const Dual<T, n>& a) {
+  return chain(T(log(a.value)), T(1.0 / a.value), a);
+}
+TENDONLAB_DUAL sqrt(const Dual<T, n>& a) {
+  const T root = sqrt(a.value);
+  return chain(root, T(0.5 / root), a);
+}
+TENDONLAB_DUAL tanh(const Dual<T, n>& a) {
+  const T t = tanh(a.value);
+  return chain(t, T(1.0 - t * t), a);
+}
+TENDONLAB_DUAL atan(const Dual<T, n>& a) {
+  return chain(T(atan(a.value)), T(1.0 / (1.0 + a.value * a.value)), a);
+}
+TENDONLAB_DUAL expm1(const Dual<T, n>& a) {
+  const T e = expm1(a.value);
+  return chain(e, T(e + 1.0), a);
+}
 TENDONLAB_DUAL abs(const Dual<T, n>& a) {
   return chain(T(abs(a.value)), T(select(plain(a.value) < 0.0, -1.0, 1.0)), a);
 }
@@ -122,4 +140,10 @@ Plain<T> plain(const Dual<T, n>& a) {
 }
 #undef TENDONLAB_DUAL
 #undef TENDONLAB_MIXED
+
+/// base^exponent for base >= 0; at base 0 that of the smallest positive number, so that no derivative is NaN.
+template <class B, class E>
+auto power(const B& base, const E& exponent) {
+  return exp(exponent * log(select(plain(base) > 1e-300, base, constant<B>(1e-300))));
+}
 }  // namespace tendonlab

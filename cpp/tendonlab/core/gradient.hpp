@@ -93,6 +93,28 @@ TENDONLAB_G cos(const Gradient<words>& a) {
   const double s = -sin(a.value[0]);
   return with_slopes<words>(Word{} + cos(a.value[0]), [&](int i) { return s * a.d[i]; });
 }
+/// A function of one number, with its value and slope.
+TENDONLAB_G chain(double value, double slope, const Gradient<words>& a) {
+  return with_slopes<words>(Word{} + value, [&](int i) { return slope * a.d[i]; });
+}
+TENDONLAB_G log(const Gradient<words>& a) {
+  return chain(log(a.value[0]), 1.0 / a.value[0], a);
+}
+TENDONLAB_G sqrt(const Gradient<words>& a) {
+  const double root = sqrt(a.value[0]);
+  return chain(root, 0.5 / root, a);
+}
+TENDONLAB_G tanh(const Gradient<words>& a) {
+  const double t = tanh(a.value[0]);
+  return chain(t, 1.0 - t * t, a);
+}
+TENDONLAB_G atan(const Gradient<words>& a) {
+  return chain(atan(a.value[0]), 1.0 / (1.0 + a.value[0] * a.value[0]), a);
+}
+TENDONLAB_G expm1(const Gradient<words>& a) {
+  const double e = expm1(a.value[0]);
+  return chain(e, e + 1.0, a);
+}
 TENDONLAB_G abs(const Gradient<words>& a) {
   return a.value[0] < 0.0 ? -a : a;
 }

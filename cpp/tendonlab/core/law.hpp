@@ -9,9 +9,10 @@ struct Sliding {
   S velocity{}, position{}, load{};  ///< load: effort that the element carries, signed; laws take its magnitude
   Plain<S> direction{};              ///< +1 or -1; 0 while the port sticks
   Plain<S> side{};                   ///< flank of a gap that touches: -1, 0 (none), +1
+  S wrap{};                          ///< wrap angle of the cable on its contact, rad
   S speed() const { return direction * velocity; }  ///< |v|, continued smoothly past zero
 };
-enum Sees : unsigned { sees_nothing = 0, sees_velocity = 1, sees_position = 2, sees_load = 4 };
+enum Sees : unsigned { sees_nothing = 0, sees_velocity = 1, sees_position = 2, sees_load = 4, sees_wrap = 8 };
 
 /// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
 /// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of

@@ -9,7 +9,8 @@
 namespace tendonlab {
 inline constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// Effort and flow are N·m and rad/s on a rotary axis, N and m/s on a linear one; the rest follows from them.
+/// Effort and flow are N·m and rad/s on a rotary axis, N and m/s on a linear one; those up to `stiffness` follow from
+/// them. The others mean the same on every axis.
 enum class Dimension {
   effort,
   flow,
@@ -21,7 +22,22 @@ enum class Dimension {
   time,
   command,
   effort_per_command,
-  output
+  output,
+  force,
+  length,
+  speed,
+  line_stiffness,
+  line_damping,
+  mass,
+  angle,
+  angular_speed,
+  torque,
+  voltage,
+  current,
+  resistance,
+  inductance,
+  torque_per_current,
+  acceleration
 };
 enum class Purpose {
   structure,  ///< of the system itself

@@ -81,6 +81,21 @@ TENDONLAB_INLINE double cos(double x) {
   return turn_sine(x * inverse_turn + 0.25);
 }
 
+inline double log(double x) {
+  return std::log(x);
+}
+inline double sqrt(double x) {
+  return std::sqrt(x);
+}
+inline double tanh(double x) {
+  return std::tanh(x);
+}
+inline double atan(double x) {
+  return std::atan(x);
+}
+inline double expm1(double x) {
+  return std::expm1(x);
+}
 /// A parameter that laws divide by: keeps its reciprocal, so that `velocity / stribeck_velocity` costs a product.
 template <class T>
 struct Divisor {

@@ -1,12 +1,13 @@
 #pragma once
 // Modes: which way ports slide or whether they stick, on which flank gaps touch. Margins, and what follows an event.
-#include "tendonlab/integrate/rate.hpp"
+#include "tendonlab/integrate/linearise.hpp"
 
 namespace tendonlab::integrate {
 /// The modes of one system and the questions asked of them. Knows ports and laws' roles, no particular law.
 template <class System, class T>
 class Contact {
   static constexpr int n = System::dof, directions = System::directions, num_modes = modes<System>;
+  static constexpr bool general = systems::moving<System> || systems::drives_a_port<System>();
   using Y = StateOf<System, T>;
   using F = Frame<System, T>;
 
@@ -20,6 +21,7 @@ class Contact {
         if (representative[port.direction] < 0) representative[port.direction] = i;
         directed[port.direction] = directed[port.direction] || slot.directed();
         dry[port.direction] = dry[port.direction] || slot.has(role::level);
+        prescribed[port.direction] = port.driven;
       }
       if constexpr (port.side >= 0) {
         side_port[port.side] = i;
@@ -31,8 +33,40 @@ class Contact {
   /// The port that stands for mode m.
   int bearer(int m) const { return representative[m]; }
 
-  T sliding_velocity(int m, const Motion<T, n>& at) const { return along(representative[m], at.velocity); }
-  T stretch(int m, const Motion<T, n>& at) const { return along(side_port[m], at.position); }
+  /// Is the velocity of mode m an input? Then it has a direction and never sticks.
+  bool driven(int m) const { return prescribed[m]; }
+
+  template <class Inputs>
+  T sliding_velocity(int m, const Y& y, const F& frame, const Inputs& in) const {
+    if constexpr (general)
+      return system.couple(y.at, frame.mode, in).port[static_cast<std::size_t>(representative[m])].velocity;
+    else
+      return along(system, representative[m], y.at.velocity);
+  }
+  template <class Inputs>
+  T stretch(int m, const Y& y, const F& frame, const Inputs& in) const {
+    if constexpr (general)
+      return system.couple(y.at, frame.mode, in).port[static_cast<std::size_t>(side_port[m])].position;
+    else
+      return along(system, side_port[m], y.at.position);
+  }
+  /// How fast the sliding velocity (or, for a gap, the stretch) of mode m changes while the state moves with `rate`.
+  template <class R, class Inputs>
+  double guard_rate(int m, const Y& y, const R& rate, const F& frame, const Inputs& in) const {
+    const bool slides = m < directions;
+    if constexpr (general) {
+      const auto c = couple_in_duals(system, y, frame, in);
+      const auto& guard = slides ? c.port[static_cast<std::size_t>(representative[m])].velocity
+                                 : c.port[static_cast<std::size_t>(side_port[m])].position;
+      double sum = plain(guard.d[2 * n]);
+      for (std::size_t j = 0; j < n; ++j)
+        sum += plain(guard.d[j]) * plain(y.at.velocity[j]) + plain(guard.d[n + j]) * plain(rate.acceleration[j]);
+      return sum;
+    } else {
+      return plain(slides ? along(system, representative[m], rate.acceleration)
+                          : along(system, side_port[m], y.at.velocity));
+    }
+  }
   T half_gap(int m) const {
     T gap(0.0);
     unroll<slots<System>>([&](auto i) {
@@ -43,7 +77,8 @@ class Contact {
   }
 
   /// Fits the projection to the modes: accelerations a -> a - W G' (G W G')^-1 G a over the sticking ports G.
-  void hold(F& frame) const {
+  template <class Geometry>
+  void hold(F& frame, const Geometry& geometry) const {
     int stuck[directions > 0 ? directions : 1], count = 0;
     for (int m = 0; m < directions; ++m)
       if (directed[m] && frame.mode[m] == 0.0) stuck[count++] = m;
@@ -51,7 +86,7 @@ class Contact {
     if (!frame.holds) return;
     for (int j = 0; j < n; ++j)
       for (int l = 0; l < n; ++l) frame.keep[j][l] = T(j == l ? 1.0 : 0.0);
-    for (int a = 0; a < count; ++a) remove(frame, representative[stuck[a]]);
+    for (int a = 0; a < count; ++a) remove(frame, geometry, representative[stuck[a]]);
   }
 
   /// Efforts that hold the sticking ports at rest, one a mode (0 where it slides): positive pushes backwards.
@@ -60,14 +95,16 @@ class Contact {
     F free = frame;
     free.holds = false;
     const auto r = rate(system, y, free, in);
+    const auto& geometry = this->geometry(y, frame, in);
     std::array<double, directions> effort{};
     double matrix[directions][directions + 1];
     int index[directions], count = 0;
     for (int m = 0; m < directions; ++m)
       if (directed[m] && frame.mode[m] == 0.0) index[count++] = m;
     for (int a = 0; a < count; ++a) {
-      for (int b = 0; b < count; ++b) matrix[a][b] = compliance(representative[index[a]], representative[index[b]]);
-      matrix[a][count] = plain(along(representative[index[a]], r.acceleration));
+      for (int b = 0; b < count; ++b)
+        matrix[a][b] = compliance(geometry, representative[index[a]], representative[index[b]]);
+      matrix[a][count] = plain(along(geometry, representative[index[a]], r.acceleration));
     }
     for (int a = 0; a < count; ++a)
       for (int b = a + 1; b < count; ++b) {
@@ -98,9 +135,10 @@ class Contact {
   }
 
   /// To which side of its gap mode m has moved; 0 where it has none.
-  double toward(int m, const Motion<T, n>& at) const {
+  template <class Inputs>
+  double toward(int m, const Y& y, const F& frame, const Inputs& in) const {
     if constexpr (System::sides > 0)
-      if (m >= directions && m < num_modes) return plain(stretch(m, at)) > 0 ? 1.0 : -1.0;
+      if (m >= directions && m < num_modes) return plain(stretch(m, y, frame, in)) > 0 ? 1.0 : -1.0;
     return 0.0;
   }
   /// Positive while mode m holds; for a sticking port the share of its level that is left, inside a gap the way to the
@@ -110,24 +148,26 @@ class Contact {
     const double mode = frame.mode[static_cast<std::size_t>(m)];
     if constexpr (System::sides > 0)
       if (m >= directions) {
-        const double g = plain(stretch(m, y.at)), gap = plain(half_gap(m));
+        const double g = plain(stretch(m, y, frame, in)), gap = plain(half_gap(m));
         return mode == 0.0 ? gap - toward * g : mode * g - gap;
       }
-    if (mode != 0.0) return mode * plain(sliding_velocity(m, y.at));
+    if (mode != 0.0) return mode * plain(sliding_velocity(m, y, frame, in));
     const double push = holding(y, frame, in)[static_cast<std::size_t>(m)];
     const double level = stick_level(m, push < 0 ? -1.0 : 1.0, y, frame, in);
     return level > 0 ? 1.0 - std::fabs(push) / level : -1.0;
   }
 
   /// Takes the sliding velocity of mode m to exactly 0: its value only, the derivatives at this instant stay.
-  void rest(int m, Motion<T, n>& at) const {
+  template <class Inputs>
+  void rest(int m, Y& y, const F& frame, const Inputs& in) const {
     const int port = representative[m];
+    const auto& geometry = this->geometry(y, frame, in);
     double norm = 0;
-    for (int j = 0; j < n; ++j) norm += square(plain(system.lever[port][j]));
-    const double excess = plain(sliding_velocity(m, at)) / norm;
+    for (int j = 0; j < n; ++j) norm += square(plain(geometry.lever[port][j]));
+    const double excess = plain(sliding_velocity(m, y, frame, in)) / norm;
     for (std::size_t j = 0; j < n; ++j) {
-      const double lever = plain(system.lever[port][j]);
-      if (lever != 0.0) at.velocity[j] = at.velocity[j] - excess * lever;
+      const double lever = plain(geometry.lever[port][j]);
+      if (lever != 0.0) y.at.velocity[j] = y.at.velocity[j] - excess * lever;
     }
   }
 
@@ -136,8 +176,9 @@ class Contact {
   template <class Inputs>
   void settle(const Y& y, F& frame, const std::array<bool, num_modes>& turning, const Inputs& in) const {
     for (int m = 0; m < directions; ++m)
-      if (turning[m] && directed[m]) frame.mode[m] = 0.0;
-    hold(frame);
+      if (turning[m] && directed[m] && !prescribed[m]) frame.mode[m] = 0.0;
+    const auto& geometry = this->geometry(y, frame, in);
+    hold(frame, geometry);
     for (int round = 0; round <= directions && frame.holds; ++round) {
       const auto push = holding(y, frame, in);
       int worst = -1;
@@ -152,37 +193,47 @@ class Contact {
       }
       if (worst < 0) return;
       frame.mode[worst] = push[worst] < 0 ? -1.0 : 1.0;
-      hold(frame);
+      hold(frame, geometry);
     }
   }
 
   const System& system;
 
  private:
-  template <class V>
-  T along(int port, const std::array<V, n>& of) const {
-    T sum = system.lever[port][0] * of[0];
-    for (std::size_t j = 1; j < n; ++j) sum = sum + system.lever[port][j] * of[j];
+  /// Whoever knows levers and inverse inertias at `y`: the system itself, or its answer where its geometry moves.
+  template <class Inputs>
+  decltype(auto) geometry(const Y& y, const F& frame, const Inputs& in) const {
+    if constexpr (systems::moving<System>)
+      return system.couple(y.at, frame.mode, in);
+    else
+      return (system);
+  }
+  template <class Geometry, class V>
+  static T along(const Geometry& geometry, int port, const std::array<V, n>& of) {
+    T sum = geometry.lever[port][0] * of[0];
+    for (std::size_t j = 1; j < n; ++j) sum = sum + geometry.lever[port][j] * of[j];
     return sum;
   }
-  double compliance(int a, int b) const {
+  template <class Geometry>
+  static double compliance(const Geometry& geometry, int a, int b) {
     double sum = 0;
     for (std::size_t j = 0; j < n; ++j)
-      sum += plain(system.lever[a][j]) * plain(system.inverse_inertia[j]) * plain(system.lever[b][j]);
+      sum += plain(geometry.lever[a][j]) * plain(geometry.inverse_inertia[j]) * plain(geometry.lever[b][j]);
     return sum;
   }
   /// One more port at rest: keep -= (keep W g)(g' keep) / (g' keep W g). For a port on one axis the entry is exactly 0.
-  void remove(F& frame, int port) const {
+  template <class Geometry>
+  static void remove(F& frame, const Geometry& geometry, int port) {
     T row[n], column[n], pivot(0.0);
     for (int j = 0; j < n; ++j) {
       row[j] = column[j] = T(0.0);
       for (int l = 0; l < n; ++l) {
-        row[j] = row[j] + system.lever[port][l] * frame.keep[l][j];
-        column[j] = column[j] +
-                    frame.keep[j][l] * (system.inverse_inertia[static_cast<std::size_t>(l)] * system.lever[port][l]);
+        row[j] = row[j] + geometry.lever[port][l] * frame.keep[l][j];
+        column[j] = column[j] + frame.keep[j][l] *
+                                    (geometry.inverse_inertia[static_cast<std::size_t>(l)] * geometry.lever[port][l]);
       }
     }
-    for (int j = 0; j < n; ++j) pivot = pivot + system.lever[port][j] * column[j];
+    for (int j = 0; j < n; ++j) pivot = pivot + geometry.lever[port][j] * column[j];
     for (int j = 0; j < n; ++j) {
       const T share = column[j] / pivot;
       for (int l = 0; l < n; ++l) frame.keep[j][l] = frame.keep[j][l] - share * row[l];
@@ -190,6 +241,6 @@ class Contact {
   }
 
   int representative[directions > 0 ? directions : 1] = {}, side_port[num_modes] = {};
-  bool directed[num_modes] = {}, dry[num_modes] = {}, gapped[num_modes] = {};
+  bool directed[num_modes] = {}, dry[num_modes] = {}, gapped[num_modes] = {}, prescribed[num_modes] = {};
 };
 }  // namespace tendonlab::integrate

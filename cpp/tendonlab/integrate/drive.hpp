@@ -13,7 +13,7 @@ using systems::Motion;
 template <class T>
 class Drive {
  public:
-  static constexpr int max_inputs = 4;
+  static constexpr int max_inputs = 16;
 
   Drive(const Experiment& experiment, const T& command_delay, const T& sensor_delay, const T& sensor_bias)
       : from(experiment),
@@ -52,6 +52,20 @@ class Drive {
   template <int k, class S>
   S input(const S& now) const {
     return from.inputs[k].value(now, piece[k]);
+  }
+  /// The rate of an input, and its integral from the first sample.
+  template <int k, class S>
+  S slope(const S& now) const {
+    return from.inputs[k].slope(now, piece[k]);
+  }
+  template <int k, class S>
+  S integral(const S& now) const {
+    return from.inputs[k].integral(now, piece[k]);
+  }
+  /// Was input k logged?
+  template <int k>
+  bool given() const {
+    return !from.inputs[k].empty();
   }
 
   /// What a continuous controller would command if nothing clipped it: the guard of its saturation.

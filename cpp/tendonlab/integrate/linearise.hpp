@@ -17,9 +17,9 @@ struct Arrowhead {
 template <class Slot, class T, int columns>
 struct SlotBlocks {
   static constexpr int has = Slot::states;
-  static constexpr bool seen[3] = {(Slot::sees & sees_velocity) != 0, (Slot::sees & sees_position) != 0,
-                                   (Slot::sees & sees_load) != 0};
-  static constexpr int outer = seen[0] + seen[1] + seen[2], inner = outer + has;
+  static constexpr bool seen[4] = {(Slot::sees & sees_velocity) != 0, (Slot::sees & sees_position) != 0,
+                                   (Slot::sees & sees_load) != 0, (Slot::sees & sees_wrap) != 0};
+  static constexpr int outer = seen[0] + seen[1] + seen[2] + seen[3], inner = outer + has;
   Response<T> value;
   T force_by[columns], rate_by[columns], force_z{}, decay{};
 
@@ -39,6 +39,7 @@ struct SlotBlocks {
     seed(s.velocity, port.velocity, seen[0]);
     seed(s.position, port.position, seen[1]);
     seed(s.load, port.load, seen[2]);
+    seed(s.wrap, port.wrap, seen[3]);
     L own(z);
     if constexpr (has > 0) own.d[inner - 1] = T(1.0);
     const Response<L> f = slot.respond(s, own);
@@ -77,9 +78,18 @@ TENDONLAB_INLINE auto couple_in_duals(const System& system, const StateOf<System
   return system.couple(at, frame.mode, in);
 }
 
+template <class T>
+TENDONLAB_INLINE const T& under(const T& a) {
+  return a;
+}
+template <class T, int n>
+TENDONLAB_INLINE const T& under(const Dual<T, n>& a) {
+  return a.value;
+}
+
 /// Adds what slot i does to the blocks, as efforts: inertia comes last.
-template <int i, class System, class T, class Port>
-TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, const Port& port,
+template <int i, class System, class T, class Coupled>
+TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, const Coupled& coupled,
                                const StateOf<System, T>& y) {
   using Slot = SlotOf<System, i>;
   constexpr int n = System::dof, columns = 2 * n + 1, m = memory_before<System, i>(), has = Slot::states;
@@ -92,12 +102,16 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
   if (slot.active == 0) return;
   T z(0.0);
   if constexpr (has > 0) z = y.memory[m];
-  const SlotBlocks<Slot, T, columns> b(slot, port, z);
+  const SlotBlocks<Slot, T, columns> b(slot, coupled.port[i], z);
   unroll<n>([&](auto j) __attribute__((always_inline)) {
     if constexpr (System::joined[i][j]) {
-      const T& lever = system.lever[i][j];
+      const auto& arm = geometry_of(system, coupled).lever[i][j];
+      const T& lever = under(arm);
       a.rate.acceleration[j] = a.rate.acceleration[j] - lever * b.value.force;
       for (int q = 0; q < columns; ++q) a.acceleration_by[j][q] = a.acceleration_by[j][q] - lever * b.force_by[q];
+      if constexpr (systems::moving<System>)
+        for (std::size_t q = 0; q < columns; ++q)
+          a.acceleration_by[j][q] = a.acceleration_by[j][q] - arm.d[q] * b.value.force;
       if constexpr (has > 0) a.pull[m][j] = -(lever * b.force_z);
     }
   });
@@ -118,11 +132,15 @@ TENDONLAB_INLINE Arrowhead<System, T> linearise(const System& system, const Stat
     a.rate.acceleration[j] = c.applied[j].value;
     for (std::size_t q = 0; q < columns; ++q) a.acceleration_by[j][q] = c.applied[j].d[q];
   }
-  unroll<slots<System>>([&](auto i) __attribute__((always_inline)) { add_slot<i>(a, system, c.port[i], y); });
+  unroll<slots<System>>([&](auto i) __attribute__((always_inline)) { add_slot<i>(a, system, c, y); });
   for (std::size_t j = 0; j < n; ++j) {
-    const T& inverse = system.inverse_inertia[j];
-    a.rate.acceleration[j] = a.rate.acceleration[j] * inverse;
+    const auto& mobility = geometry_of(system, c).inverse_inertia[j];
+    const T& inverse = under(mobility);
     for (int q = 0; q < columns; ++q) a.acceleration_by[j][q] = a.acceleration_by[j][q] * inverse;
+    if constexpr (systems::moving<System>)
+      for (std::size_t q = 0; q < columns; ++q)
+        a.acceleration_by[j][q] = a.acceleration_by[j][q] + mobility.d[q] * a.rate.acceleration[j];
+    a.rate.acceleration[j] = a.rate.acceleration[j] * inverse;
     for (int i = 0; i < nz; ++i) a.pull[i][j] = a.pull[i][j] * inverse;
   }
   if (frame.holds) {

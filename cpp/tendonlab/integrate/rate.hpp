@@ -67,11 +67,21 @@ struct Frame {
   }
 };
 
+/// Who knows levers and inverse inertias: the system, or what it answered where its geometry moves.
+template <class System, class Coupled>
+TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& coupled) {
+  if constexpr (systems::moving<System>)
+    return coupled;
+  else
+    return system;
+}
+
 template <class System, class T, class Inputs>
 TENDONLAB_INLINE auto rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
                            const Inputs& in) {
   constexpr int n = System::dof;
   const auto c = system.couple(y.at, frame.mode, in);
+  const auto& geometry = geometry_of(system, c);
   Rate<T, n, memories<System>> r;
   r.acceleration = c.applied;
   unroll<slots<System>>([&](auto i) __attribute__((always_inline)) {
@@ -83,10 +93,10 @@ TENDONLAB_INLINE auto rate(const System& system, const StateOf<System, T>& y, co
     const Response<T> f = slot.respond(c.port[i], z);
     if constexpr (has > 0) r.memory[m] = f.rate;
     unroll<n>([&](auto j) __attribute__((always_inline)) {
-      if constexpr (System::joined[i][j]) r.acceleration[j] = r.acceleration[j] - system.lever[i][j] * f.force;
+      if constexpr (System::joined[i][j]) r.acceleration[j] = r.acceleration[j] - geometry.lever[i][j] * f.force;
     });
   });
-  for (std::size_t j = 0; j < n; ++j) r.acceleration[j] = r.acceleration[j] * system.inverse_inertia[j];
+  for (std::size_t j = 0; j < n; ++j) r.acceleration[j] = r.acceleration[j] * geometry.inverse_inertia[j];
   if (frame.holds) frame.project([&](int j) -> T& { return r.acceleration[static_cast<std::size_t>(j)]; });
   return r;
 }

@@ -45,19 +45,14 @@ class Jump {
   /// dt/dp = -g_p / g_t of the guard g whose root the event is; its value is of no interest.
   template <class Simulation>
   T of_guard(const Simulation& s, int mode, double toward) const {
-    const auto& at = s.y.at;
+    const double change = mode < modes<System> ? s.contact.guard_rate(mode, s.y, before, s.frame, s.drive) : 0.0;
     if (mode < System::directions) {
       if (s.frame.mode[static_cast<std::size_t>(mode)] == 0.0) return T(0.0);  // a release: the rate is continuous
-      systems::Motion<T, n> change;
-      change.velocity = before.acceleration;
-      return quotient(s.contact.sliding_velocity(mode, at), plain(s.contact.sliding_velocity(mode, change)));
+      return quotient(s.contact.sliding_velocity(mode, s.y, s.frame, s.drive), change);
     }
     if (mode >= modes<System>) return T(0.0);  // saturation: the rate is continuous
-    systems::Motion<T, n> change;
-    change.position = at.velocity;
     const double flank = s.frame.mode[static_cast<std::size_t>(mode)], side = flank == 0.0 ? toward : flank;
-    return quotient(s.contact.stretch(mode, at) - side * s.contact.half_gap(mode),
-                    plain(s.contact.stretch(mode, change)));
+    return quotient(s.contact.stretch(mode, s.y, s.frame, s.drive) - side * s.contact.half_gap(mode), change);
   }
   static T quotient(const T& guard, double rate) { return rate == 0.0 ? T(0.0) : (-1.0 / rate) * guard; }
 

@@ -9,6 +9,7 @@ namespace tendonlab::integrate {
 struct Signal {
   std::vector<double> knots;                        ///< start of each piece, s, increasing
   std::vector<std::array<double, 4>> coefficients;  ///< value, slope, half curvature, ... in time from the knot
+  std::vector<double> before;                       ///< integral up to each knot
   bool holds = false;                               ///< pieces are constant: the stepper lands on their borders
 
   bool empty() const { return knots.empty(); }
@@ -38,6 +39,25 @@ struct Signal {
     const auto& c = coefficients[static_cast<std::size_t>(piece)];
     const S x = t - knots[static_cast<std::size_t>(piece)];
     return c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
+  }
+  /// Integral from the first knot to `t`; a signal that is not given has none.
+  template <class S>
+  S integral(const S& t, int& piece) const {
+    if (empty()) return constant<S>(0.0);
+    if (!holds) piece = locate(plain(t), piece);
+    const auto i = static_cast<std::size_t>(piece);
+    const auto& c = coefficients[i];
+    const S x = t - knots[i];
+    return before[i] + x * (c[0] + x * (c[1] / 2.0 + x * (c[2] / 3.0 + x * (c[3] / 4.0))));
+  }
+  /// Prepares `integral`: what has gathered before each piece.
+  void gather() {
+    before.assign(knots.size(), 0.0);
+    for (std::size_t i = 1; i < knots.size(); ++i) {
+      const auto& c = coefficients[i - 1];
+      const double x = knots[i] - knots[i - 1];
+      before[i] = before[i - 1] + x * (c[0] + x * (c[1] / 2.0 + x * (c[2] / 3.0 + x * (c[3] / 4.0))));
+    }
   }
   /// When a held value next changes after piece `i`; infinity if it never does.
   double next_change(int i) const {

@@ -94,11 +94,11 @@ class Simulation {
       frame.mode[i] = m < System::directions ? 1.0 : 0.0;
       if (!contact.guarded(m)) continue;
       if (m < System::directions) {
-        const double v = plain(contact.sliding_velocity(m, y.at));
+        const double v = plain(contact.sliding_velocity(m, y, frame, drive));
         resting[i] = v == 0.0;
         frame.mode[i] = v < 0 ? -1.0 : 1.0;
       } else {
-        const double g = plain(contact.stretch(m, y.at)), gap = plain(contact.half_gap(m));
+        const double g = plain(contact.stretch(m, y, frame, drive)), gap = plain(contact.half_gap(m));
         frame.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
       }
     }
@@ -149,7 +149,7 @@ class Simulation {
     Crossing first;
     for (int m = 0; m <= saturation; ++m) {
       if (!guarded(m)) continue;
-      const double toward = contact.toward(m, s.to.at), after = margin(m, s.to, toward);
+      const double toward = contact.toward(m, s.to, frame, drive), after = margin(m, s.to, toward);
       if (after >= -on_guard) continue;
       const double before = margin(m, y, toward);
       if (before <= on_guard) return {m, 0, toward, true};
@@ -204,10 +204,12 @@ class Simulation {
   }
   void turn_direction(int m, std::array<bool, num_modes>& turning) {
     const auto i = static_cast<std::size_t>(m);
-    if (frame.mode[i] == 0.0) {
+    if (contact.driven(m)) {
+      frame.mode[i] = -frame.mode[i];
+    } else if (frame.mode[i] == 0.0) {
       frame.mode[i] = contact.holding(y, frame, drive)[i] < 0 ? -1.0 : 1.0;
     } else {
-      contact.rest(m, y.at);
+      contact.rest(m, y, frame, drive);
       turning[i] = true;
     }
   }

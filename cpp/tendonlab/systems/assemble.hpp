@@ -6,16 +6,35 @@
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::systems {
+/// The first port of the element of port i: its slot speaks for the others.
+template <class System>
+constexpr std::size_t first_port(std::size_t i) {
+  std::size_t first = 0;
+  while (System::ports[first].element != System::ports[i].element) ++first;
+  return first;
+}
+/// Gives every port of an element the laws of its first.
+template <class System, std::size_t... i>
+void share_slots(System& system, std::index_sequence<i...>) {
+  ((std::get<i>(system.slot) = std::get<first_port<System>(i)>(system.slot)), ...);
+}
+
 /// Calls f(element, laws, active) for each place where laws sit.
 template <class System, class F>
 void for_each_place(System& system, F&& f) {
   std::size_t i = 0;
-  std::apply([&](auto&... slot) { (f(std::string(System::ports[i++].element), slot.laws, slot.active), ...); },
-             system.slot);
-  f(std::string("load"), system.load.laws, system.load.active);
-  f(std::string("actuation"), system.actuation.laws, system.actuation.active);
+  const auto slot = [&](auto& of) {
+    if (first_port<System>(i) == i) f(std::string(System::ports[i].element), of.laws, of.active);
+    ++i;
+  };
+  std::apply([&](auto&... each) { (slot(each), ...); }, system.slot);
+  const auto chain = [&](const std::string& element, auto& of) {
+    if constexpr (std::decay_t<decltype(of)>::size > 0) f(element, of.laws, of.active);
+  };
+  chain("load", system.load);
+  chain("actuation", system.actuation);
   for (std::size_t c = 0; c < System::outputs.size(); ++c)
-    f("sensor." + std::string(System::outputs[c].name), system.sensor[c].laws, system.sensor[c].active);
+    chain("sensor." + std::string(System::outputs[c].name), system.sensor[c]);
 }
 
 /// Calls f(element, law, is_active bit) for each law in each place.
@@ -44,10 +63,13 @@ bool is_structural(const std::string& effect) {
   return false;
 }
 
-/// The public name of a parameter: <element>_<own name>, except where the system keeps its nominal effects plain.
+/// The public name of a parameter: <element>_<own name>, except where the system renames it or keeps its nominal
+/// effects plain.
 template <class System>
 std::string parameter_name(const std::string& element, std::string_view law, std::string_view own) {
   if (element.empty()) return std::string(own);
+  for (const auto& other : RenamedOf<System>::list)
+    if (other.effect == element + ":" + std::string(law) && other.own == own) return std::string(other.name);
   if (System::plain_names)
     for (const auto& nominal : System::nominal)
       if (nominal == element + ":" + std::string(law)) return std::string(own);

@@ -26,6 +26,14 @@ struct SignalInfo {
   Dimension dimension;
   bool required;
   int axis;
+  std::string between, unless;  ///< inputs only
+};
+/// A place where laws sit; `axis` is empty where it is the system's.
+struct ElementInfo {
+  std::string name, axis;
+};
+struct PortInfo {
+  std::string name, element;
 };
 struct SystemInfo {
   std::string kind, equation;
@@ -33,7 +41,10 @@ struct SystemInfo {
   std::vector<SignalInfo> inputs, outputs;
   std::vector<ParameterInfo> parameters;
   std::vector<EffectInfo> effects;
-  std::vector<std::string> elements, ports, nominal;
+  std::vector<ElementInfo> elements;
+  std::vector<PortInfo> ports;
+  std::vector<std::string> nominal;
+  bool commanded, sampled;
 };
 
 /// A system with numbers in it: one value a parameter, one flag an effect, in the order of `SystemInfo`.

@@ -1,23 +1,41 @@
 #pragma once
 // The one place where a system template becomes a Model: its description and its simulations in every scalar.
 #include "tendonlab/integrate/recorder.hpp"
+#include "tendonlab/integrate/sampling.hpp"
 #include "tendonlab/systems/assemble.hpp"
 #include "tendonlab/systems/model.hpp"
 
 namespace tendonlab {
+namespace systems {
+inline std::string word(Between b) {
+  return b == Between::hold ? "hold" : b == Between::linear ? "linear" : "smooth";
+}
+template <class System>
+std::string axis_of(const std::string& element) {
+  for (const auto& port : System::ports)
+    if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
+  return {};
+}
+}  // namespace systems
+
 template <template <class> class Of>
 SystemInfo describe() {
   using System = Of<double>;
   System system{};
-  SystemInfo info{std::string(System::name), std::string(System::equation), System::dof, {}, {}, {}, {}, {}, {}, {}};
+  SystemInfo info{};
+  info.kind = System::name, info.equation = System::equation, info.dof = System::dof;
+  info.commanded = System::commanded, info.sampled = systems::sampled<System>;
   for (const auto& s : System::inputs)
-    info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1});
+    info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1,
+                           systems::word(s.between), std::string(s.unless)});
   for (const auto& s : System::outputs)
-    info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis});
-  for (const auto& port : System::ports) info.ports.emplace_back(port.element);
+    info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}});
+  for (const auto& port : System::ports)
+    info.ports.push_back({std::string(port.name.empty() ? port.element : port.name), std::string(port.element)});
   for (const auto& name : System::nominal) info.nominal.emplace_back(name);
-  systems::for_each_place(system,
-                          [&](const std::string& element, auto&, unsigned) { info.elements.push_back(element); });
+  systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) {
+    info.elements.push_back({element, systems::axis_of<System>(element)});
+  });
   systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
     info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
                                std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
@@ -63,6 +81,7 @@ System assemble(const Configuration& with, const std::vector<integrate::Seed>& s
   systems::for_each_law(system, [&](const std::string&, auto&, unsigned& active, unsigned bit) {
     if (with.active[effect++]) active |= bit;
   });
+  systems::share_slots(system, std::make_index_sequence<System::ports.size()>{});
   system.prepare();
   return system;
 }
@@ -75,11 +94,16 @@ class ModelOf final : public Model {
   const SystemInfo& info() const override { return description; }
   RigidMotion rigid_motion(const Configuration& with) const override {
     const auto system = assemble<Of<double>, double>(with, {}, 0, 0);
-    const auto shape = system.rigid_shape();
-    RigidMotion rigid{{shape.begin(), shape.end()}, 0.0, system.effort_per_command()};
-    for (std::size_t j = 0; j < shape.size(); ++j) rigid.inertia += square(shape[j]) / system.inverse_inertia[j];
-    rigid.inertia /= rigid.effort_per_command;
-    return rigid;
+    if constexpr (systems::sampled<Of<double>>) {
+      return {{}, 0.0, 1.0};
+    } else {
+      const auto shape = system.rigid_shape();
+      RigidMotion rigid{{shape.begin(), shape.end()}, 0.0, 1.0};
+      if constexpr (Of<double>::commanded) rigid.effort_per_command = system.effort_per_command();
+      for (std::size_t j = 0; j < shape.size(); ++j) rigid.inertia += square(shape[j]) / system.inverse_inertia[j];
+      rigid.inertia /= rigid.effort_per_command;
+      return rigid;
+    }
   }
   integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
                                  const integrate::Settings& settings) const override {
@@ -115,7 +139,7 @@ class ModelOf final : public Model {
       throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ",
                                     experiment.position.size(), " positions: ", System::name, " expects ",
                                     System::inputs.size(), " and ", System::dof));
-    index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
+    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), System::dof);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
@@ -129,6 +153,19 @@ class ModelOf final : public Model {
                   integrate::Trajectory& out) {
     using System = Of<T>;
     const System system = assemble<System, T>(with, seeds, first, count);
+    const auto column = static_cast<int>(first), columns = static_cast<int>(count);
+    const bool shows = settings.ports && first == 0;
+    if constexpr (systems::sampled<System>)
+      integrate::Sampling<System, T>(system, experiment, out, column, columns, shows);
+    else
+      integrate_steps<T>(system, experiment, seeds, first, count, settings,
+                         integrate::Recorder<System, T>(system, experiment, out, column, columns, shows), out);
+  }
+  template <class T, class Record>
+  static void integrate_steps(const Of<T>& system, const integrate::Experiment& experiment, const Seeds& seeds,
+                              std::size_t first, std::size_t count, const integrate::Settings& settings,
+                              Record&& record, integrate::Trajectory& out) {
+    using System = Of<T>;
     const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
     integrate::Simulation<System, T> simulation(
         system, experiment, settings,
@@ -144,8 +181,7 @@ class ModelOf final : public Model {
         if (seed.of != integrate::Seed::Of::parameter)
           of[static_cast<std::size_t>(seed.index)].seed(static_cast<int>(k), 1.0);
       }
-    simulation.run(out, integrate::Recorder<System, T>(system, experiment, out, static_cast<int>(first),
-                                                       static_cast<int>(count), settings.ports && first == 0));
+    simulation.run(out, record);
   }
 
   const SystemInfo description = describe<Of>();

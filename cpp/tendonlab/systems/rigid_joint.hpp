@@ -11,12 +11,13 @@ struct RigidJoint {
   static constexpr std::array<Port, 1> ports{{{"joint", 0}}};
   static constexpr bool joined[1][1] = {{true}};
   static constexpr std::array<Input, 2> inputs{
-      {{"motor_torque", "command to the actuator", Dimension::command, true},
-       {"known_torque", "effort known to act on the joint", Dimension::effort, false}}};
+      {{"motor_torque", "command to the actuator", Dimension::command, true, Between::hold},
+       {"known_torque", "effort known to act on the joint", Dimension::effort, false, Between::hold}}};
   static constexpr std::array<Output, 2> outputs{{{"joint_angle", "position of the joint", Dimension::displacement, 0},
                                                   {"joint_velocity", "velocity of the joint", Dimension::flow, -1}}};
   static constexpr std::array<std::string_view, 0> structural{};
   static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
+  static constexpr bool commanded = true;    ///< input 0 is the command of an actuator
   static constexpr bool plain_names = true;  ///< parameters of the nominal effects carry no element in front
 
   std::tuple<Slot<T, friction::All>> slot;

@@ -23,17 +23,70 @@ struct Coupling {
   std::array<Sliding<S>, ports> port{};
   std::array<S, n> applied{};
 };
+/// The same where the geometry moves: levers and inverse inertias are functions of the motion.
+template <class S, int ports, int n>
+struct MovingCoupling : Coupling<S, ports, n> {
+  S lever[ports][n]{};
+  std::array<S, n> inverse_inertia{};
+};
+enum class Axis { of_system, rotary, linear };
 /// Where a slot sits: its element, whether its force depends on the direction of its sliding (and which mode that is),
-/// whether it has a gap (and which mode is its side). A mode -1 is none.
+/// whether it has a gap (and which mode is its side); a mode -1 is none. `axis`: what it slides along. `driven`: its
+/// velocity is prescribed by inputs, so it never sticks: its direction is that of the last motion. Ports of one element
+/// carry the same laws with the same parameters; each then has a `name` of its own.
 struct Port {
   std::string_view element;
   int direction = -1, side = -1;
+  Axis axis = Axis::of_system;
+  bool driven = false;
+  std::string_view name = {};
 };
+/// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated.
+enum class Between { hold, linear, smooth };
+/// `unless`: an input that takes the place of this one where it was logged.
 struct Input {
   std::string_view name, meaning;
   Dimension dimension;
   bool required;
+  Between between;
+  std::string_view unless = {};
 };
+/// The public name of a parameter where it is not made by the rule: {effect, own name, public name}.
+struct Renamed {
+  std::string_view effect, own, name;
+};
+
+// What a system need not state.
+template <class System, class = void>
+struct MovingOf : std::false_type {};
+template <class System>
+struct MovingOf<System, std::enable_if_t<System::moving>> : std::true_type {};
+/// Does its geometry move?
+template <class System>
+inline constexpr bool moving = MovingOf<System>::value;
+
+template <class System, class = void>
+struct SampledOf : std::false_type {};
+template <class System>
+struct SampledOf<System, std::enable_if_t<System::sampled>> : std::true_type {};
+/// Does it answer sample by sample, without a differential equation?
+template <class System>
+inline constexpr bool sampled = SampledOf<System>::value;
+
+template <class System, class = void>
+struct RenamedOf {
+  static constexpr std::array<Renamed, 0> list{};
+};
+template <class System>
+struct RenamedOf<System, std::void_t<decltype(System::renamed)>> {
+  static constexpr auto& list = System::renamed;
+};
+template <class System>
+constexpr bool drives_a_port() {
+  for (const auto& port : System::ports)
+    if (port.driven) return true;
+  return false;
+}
 /// An output; `axis` is the degree of freedom whose angle it is, -1 for anything else.
 struct Output {
   std::string_view name, meaning;

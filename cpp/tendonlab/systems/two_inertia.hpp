@@ -16,8 +16,8 @@ struct TwoInertia {
   static constexpr std::array<Port, 4> ports{{{"motor", 0}, {"joint", 1}, {"contact", 1}, {"cable", -1, 2}}};
   static constexpr bool joined[4][2] = {{true, false}, {false, true}, {false, true}, {true, true}};
   static constexpr std::array<Input, 2> inputs{
-      {{"motor_torque", "torque of the motor", Dimension::command, true},
-       {"known_torque", "effort known to act on the joint", Dimension::effort, false}}};
+      {{"motor_torque", "torque of the motor", Dimension::command, true, Between::hold},
+       {"known_torque", "effort known to act on the joint", Dimension::effort, false, Between::hold}}};
   static constexpr std::array<Output, 3> outputs{
       {{"motor_angle", "angle of the motor", Dimension::displacement, 0},
        {"joint_angle", "angle of the joint", Dimension::displacement, 1},
@@ -25,6 +25,7 @@ struct TwoInertia {
   static constexpr std::array<std::string_view, 1> structural{"cable:compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:coulomb", "motor:viscous", "joint:coulomb",
                                                            "joint:viscous"};
+  static constexpr bool commanded = true;  ///< input 0 is the command of an actuator
   static constexpr bool plain_names = false;
 
   using Friction = Slot<T, friction::All>;

@@ -13,7 +13,7 @@ from tendonlab.catalog import SystemInfo
 from tendonlab.data.dataset import Experiment, NominalParameter, SignalSpec
 from tendonlab.data.names import expected_one_of
 from tendonlab.data.parameters import find_parameter, require_within
-from tendonlab.data.read import Columns, read_columns
+from tendonlab.data.read import Columns, MissingColumnError, read_columns
 from tendonlab.data.schema import Table
 from tendonlab.data.split import choose_test
 from tendonlab.data.units import convert, require_dimension
@@ -37,6 +37,7 @@ class Context:
     signals: Mapping[str, SignalSpec]
     time_column: str
     time_unit: str
+    time_stated: bool
 
 
 def read_time(top: Table) -> tuple[str, str]:
@@ -131,9 +132,15 @@ def _check_initial(table: Table, initial: Mapping[str, float], info: SystemInfo)
 def _read_frame(file: str, context: Context) -> pd.DataFrame:
     import pandas as pd
 
-    wanted = list(dict.fromkeys([context.time_column, *(spec.column for spec in context.signals.values())]))
-    columns = read_columns(context.folder / file, wanted)
-    time = _read_time_samples(columns, context)
+    signals = list(dict.fromkeys(spec.column for spec in context.signals.values()))
+    try:
+        columns = read_columns(context.folder / file, list(dict.fromkeys([context.time_column, *signals])))
+        time = _read_time_samples(columns, context)
+    except MissingColumnError as error:
+        if error.column != context.time_column or context.time_stated or not context.info.sampled:
+            raise
+        columns = read_columns(context.folder / file, signals)  # steady points: a row has a number, no instant
+        time = np.arange(len(columns.values[signals[0]]), dtype=float)
     samples = {name: _read_samples(columns, spec, time) for name, spec in context.signals.items()}
     return pd.DataFrame(samples, index=pd.Index(time, name="t"))
 

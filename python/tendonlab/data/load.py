@@ -39,6 +39,7 @@ def load(path: str | PathLike[str]) -> Dataset:
         signals=signals,
         time_column=column,
         time_unit=unit,
+        time_stated="time" in top.values,
     )
     experiments = read_experiments(top, context)
     _require_motion(experiments, signals.values(), info=info, controller=controller)

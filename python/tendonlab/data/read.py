@@ -21,6 +21,14 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"  # how such a file begins
 Reader = Callable[[Path, Sequence[str]], dict[str, np.ndarray]]
 
 
+class MissingColumnError(DatasetError):
+    """A file lacks a column that was asked for."""
+
+    def __init__(self, file: str, column: str, available: Mapping[str, Any]) -> None:
+        super().__init__(f"{file}, column {column!r}: is missing; {expected_one_of(column, available)}")
+        self.column = column
+
+
 @dataclass(frozen=True)
 class Columns:
     """The columns of one file, float, each of shape (n,). `first_row` is how the first sample is counted in messages:
@@ -57,7 +65,7 @@ def read_columns(path: Path, columns: Sequence[str]) -> Columns:
 def _pick(file: str, available: Mapping[str, Any], columns: Sequence[str]) -> dict[str, np.ndarray]:
     for column in columns:
         if column not in available:
-            raise DatasetError(f"{file}, column {column!r}: is missing; {expected_one_of(column, available)}")
+            raise MissingColumnError(file, column, available)
     return {column: _as_vector(file, column, available[column]) for column in columns}
 
 

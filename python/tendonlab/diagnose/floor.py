@@ -55,7 +55,7 @@ def friction_groups(system: System) -> list[list[int]]:
     """Indices of the friction parameters of each element: they scale together from run to run."""
     info = system.info
     groups = []
-    for element in info.ports:
+    for element in dict.fromkeys(port.element for port in info.ports):
         group = [
             i
             for i, p in enumerate(info.parameters)

@@ -24,7 +24,7 @@ def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int
     info = case.system.info
     output = next((c for c, s in enumerate(info.outputs) if s.axis == 0 and c in case.measured), None)
     steps = [float(np.median(np.diff(e.time))) for e in case.experiments]
-    if info.dof != 1 or output is None or max(steps) > 0.25 / CUTOFF:
+    if info.dof != 1 or not info.commanded or output is None or max(steps) > 0.25 / CUTOFF:
         return None
     motions = [_motion(case, i, output) for i in range(len(case.experiments))]
     rows = []

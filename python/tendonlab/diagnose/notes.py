@@ -49,7 +49,8 @@ def units(case: Case) -> dict[str, str]:
     info, axis = case.system.info, case.system.axis
     found = {s.name: unit(s.dimension, axis) for s in info.outputs}
     for port in info.ports:
-        found |= {f"{port}_{quantity}": unit(d, axis) for quantity, d in where.COORDINATES.items()}
+        own = info.element_axes.get(port.element, axis)
+        found |= {f"{port.name}_{quantity}": unit(d, own) for quantity, d in where.COORDINATES.items()}
     return found | {"time": "s"}
 
 

@@ -62,11 +62,8 @@ class PortRecords:
 
     def coordinate(self, port: str, quantity: str) -> np.ndarray:
         """Samples of one quantity at one port."""
-        return np.asarray(
-            self.ports[
-                self.case.system.info.ports.index(port), ("velocity", "position", "load", "force").index(quantity)
-            ]
-        )
+        names = [p.name for p in self.case.system.info.ports]
+        return np.asarray(self.ports[names.index(port), ("velocity", "position", "load", "force").index(quantity)])
 
 
 def excess(case: Case, of: Replayed, floor: Floor) -> np.ndarray:
@@ -88,9 +85,9 @@ def regimes(case: Case, of: Replayed, floor: Floor, records: PortRecords) -> lis
     rows = []
     for port in case.system.info.ports:
         for quantity in COORDINATES:
-            x = records.coordinate(port, quantity)
+            x = records.coordinate(port.name, quantity)
             if np.ptp(x) > 0:
-                rows.append(_regime(f"{port}_{quantity}", x, e, shifts))
+                rows.append(_regime(f"{port.name}_{quantity}", x, e, shifts))
     rows.append(_regime("time", records.time, e, shifts))
     return sorted(rows, key=lambda r: (r["p_value"], -r["share"]))[:6]
 
@@ -122,20 +119,21 @@ def maps(
     after = np.sqrt(np.maximum(excess(case, improved, floor) + 1.0, 0.0))
     found = []
     for port in case.system.info.ports:
-        x = records.coordinate(port, "velocity")
-        quantity = "load" if np.ptp(records.coordinate(port, "load")) > 0 else "position"
-        y = records.coordinate(port, quantity)
+        x = records.coordinate(port.name, "velocity")
+        quantity = "load" if np.ptp(records.coordinate(port.name, "load")) > 0 else "position"
+        y = records.coordinate(port.name, quantity)
+        axis = case.system.info.element_axes.get(port.element, case.system.axis)
         if np.ptp(x) == 0 or np.ptp(y) == 0:
             continue
         x_edges, y_edges = _edges(x), _edges(y)
         found.append(
             WhereMap(
-                element=port,
-                x=f"{port}_velocity",
-                x_unit=unit("flow", case.system.axis),
+                element=port.name,
+                x=f"{port.name}_velocity",
+                x_unit=unit("flow", axis),
                 x_edges=x_edges,
-                y=f"{port}_{quantity}",
-                y_unit=unit(COORDINATES[quantity], case.system.axis),
+                y=f"{port.name}_{quantity}",
+                y_unit=unit(COORDINATES[quantity], axis),
                 y_edges=y_edges,
                 refitted=_cells(x, y, before, x_edges, y_edges),
                 with_effect=_cells(x, y, after, x_edges, y_edges),
