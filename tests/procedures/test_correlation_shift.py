@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -18,6 +18,7 @@ def wave(time: np.ndarray) -> np.ndarray:
     return np.asarray(np.sin(3.0 * time) + 0.7 * np.sin(4.3 * time + 1.0) + 0.02 * time**2)
 
 
+@settings(max_examples=50, deadline=None)
 @given(late=st.floats(-0.9, 0.9), gain=st.floats(0.1, 10.0), offset=st.floats(-100.0, 100.0))
 def test_any_shift_is_recovered_between_samples(late: float, gain: float, offset: float) -> None:
     """Gain and offset do not matter. A parabola places the peak to about a thousandth of an interval."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -16,6 +16,7 @@ TIME = np.arange(0.0, 10.0, 1e-3)
 POSITION, SPEED = np.sin(2.0 * TIME), 2.0 * np.cos(2.0 * TIME)
 
 
+@settings(max_examples=50, deadline=None)
 @given(coefficients=st.tuples(*[st.floats(-5.0, 5.0)] * 4))
 def test_savgol_is_exact_on_cubics_to_the_ends(coefficients: tuple[float, ...]) -> None:
     time = TIME[:200] * 10.0

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -17,6 +17,7 @@ from tendonlab.procedures import MapPoint, friction_map, map_point
 TIME = np.arange(0.0, 4.0, 1e-3)
 
 
+@settings(max_examples=50, deadline=None)
 @given(speed=st.floats(-100.0, 100.0).filter(lambda w: abs(w) > 0.1), torque=st.floats(-1.0, 1.0))
 def test_a_clean_run_gives_its_speed_and_torque(speed: float, torque: float) -> None:
     point = map_point(TIME, 3.0 + speed * TIME, np.full(len(TIME), torque))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -20,6 +20,7 @@ def test_torque_is_the_sum_of_the_forces_times_the_lever() -> None:
     assert reactive_torque([3.0], [2.8], lever=0.06) == pytest.approx([0.348], rel=1e-12)
 
 
+@settings(max_examples=50, deadline=None)
 @given(gain=st.floats(0.1, 10.0), offset=st.floats(-5.0, 5.0), flipped=st.booleans())
 def test_calibration_undoes_what_the_cell_does(gain: float, offset: float, flipped: bool) -> None:
     force = np.array([-3.0, 0.0, 2.0, 11.0])

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -33,6 +33,7 @@ def test_gain_is_butterworths(frequency: float, order: int) -> None:
     assert abs(sine_through(frequency, order=order, zero_phase=False)) == pytest.approx(once, rel=0.01)
 
 
+@settings(max_examples=50, deadline=None)
 @given(frequency=st.floats(0.1, 2.0))
 def test_forwards_and_backwards_shifts_no_phase(frequency: float) -> None:
     whole = round(40.0 * frequency) / 40.0  # whole periods between the ends
@@ -54,6 +55,7 @@ def test_reversed_time_gives_the_reversed_record() -> None:
     np.testing.assert_allclose(forwards[INSIDE], backwards[INSIDE], rtol=0, atol=1e-9)
 
 
+@settings(max_examples=50, deadline=None)
 @given(offset=st.floats(-10.0, 10.0), slope=st.floats(-5.0, 5.0))
 def test_a_straight_line_passes_unchanged_to_its_ends(offset: float, slope: float) -> None:
     line = offset + slope * TIME

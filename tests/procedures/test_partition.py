@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures import split
 
 
+@settings(max_examples=50, deadline=None)
 @given(n=st.integers(4, 500), share=st.floats(0.2, 0.8), contiguous=st.booleans(), seed=st.integers(0, 2**32))
 def test_every_sample_is_on_one_side(n: int, share: float, contiguous: bool, seed: int) -> None:
     train, validation = split(n, share=share, contiguous=contiguous, seed=seed)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -15,6 +15,7 @@ from tendonlab.procedures import reversal_mask, reversals
 TIME = np.arange(0.0, 20.0, 0.01)
 
 
+@settings(max_examples=50, deadline=None)
 @given(period=st.floats(2.0, 9.0), phase=st.floats(0.05, 0.95), amplitude=st.floats(1e-6, 1e6))
 def test_a_sine_reverses_twice_a_period(period: float, phase: float, amplitude: float) -> None:
     """A straight line between samples places a root of a sine to (2 pi h / T)^2 / 8 of an interval and better."""
@@ -57,6 +58,7 @@ def test_a_dwell_between_motions_of_one_sense_is_no_reversal_whatever_its_noise(
     np.testing.assert_array_equal(reversal_mask(TIME, velocity), np.abs(velocity) > 0.4 * velocity.max())
 
 
+@settings(max_examples=50, deadline=None)
 @given(data=st.data())
 def test_the_mask_is_what_its_words_say(data: st.DataObject) -> None:
     """On any velocity: nothing slow is kept, nothing near a reversal, and all else is."""
@@ -65,7 +67,9 @@ def test_the_mask_is_what_its_words_say(data: st.DataObject) -> None:
     keep = reversal_mask(time, velocity, share=0.3, around=0.15, rest=0.0)
     times = reversals(time, velocity, rest=0.0)
     slow = np.abs(velocity) < 0.3 * np.max(np.abs(velocity))
-    near = np.any(np.abs(time[:, None] - times) <= 0.15, axis=1)
+    away = np.abs(time[:, None] - times)
+    assume(not np.any(np.abs(away - 0.15) < 1e-9))  # on the edge rounding decides
+    near = np.any(away < 0.15, axis=1)
     assert not keep[slow].any()
     assert not keep[near].any()
     if not (velocity == 0.0).any():  # else a reversal has a length

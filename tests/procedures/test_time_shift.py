@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
@@ -45,6 +45,7 @@ def test_a_jump_smeared_by_the_filter_stays_where_it_is() -> None:
     assert found["measured_jump"].to_numpy() == pytest.approx([50.0], rel=0.1)
 
 
+@settings(max_examples=50, deadline=None)
 @given(at=st.integers(500, 3000), late=st.integers(-400, 900), height=st.floats(16.0, 500.0), down=st.booleans())
 def test_any_shift_is_recovered_to_the_sample(at: int, late: int, height: float, down: bool) -> None:
     steps = (np.where(np.arange(len(TIME)) < k, 0.0, -height if down else height) for k in (at, at + late))
@@ -59,6 +60,19 @@ def test_pairs_keep_their_order_and_their_sense() -> None:
     found = time_shift(TIME, ours, theirs, threshold=15.0)
     assert found["simulated_time"].to_numpy() == pytest.approx([10.005, 12.005, 20.005], abs=0.005)
     assert found["shift"].to_numpy() == pytest.approx([4.0, 4.0, -1.0], abs=0.01)
+
+
+@given(
+    waits=st.lists(st.tuples(st.integers(30, 200), st.integers(30, 200)), min_size=1, max_size=12),
+    late=st.integers(0, 1500),
+)
+def test_equal_numbers_of_jumps_are_paired_in_order(waits: list[tuple[int, int]], late: int) -> None:
+    ours, theirs = (np.cumsum([w[k] for w in waits]) for k in (0, 1))
+    sample = np.arange(5000)
+    steps = ((sample[:, None] >= at).sum(axis=1) * 40.0 for at in (ours, theirs + late))
+    found = time_shift(sample / RATE, *steps, threshold=15.0)
+    assert found["simulated_time"].is_monotonic_increasing
+    assert found["shift"].to_numpy() * RATE == pytest.approx(theirs + late - ours, abs=1e-6)
 
 
 def test_what_has_no_partner_stays_alone() -> None:
