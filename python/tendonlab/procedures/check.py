@@ -16,10 +16,11 @@ JITTER = 0.01  # share of the sampling interval by which intervals may differ an
 
 def samples(name: str, values: ArrayLike, *, fewest: int = 1) -> np.ndarray:
     """`values` as a row of finite floats, at least `fewest` of them."""
+    given = np.asarray(values)
     try:
-        row = np.asarray(values, dtype=float)
+        row = given.astype(float, casting="unsafe" if given.dtype == object else "same_kind")
     except (TypeError, ValueError) as error:
-        raise ParameterError(f"{name} holds what is no number: expected a row of numbers ({error})") from error
+        raise ParameterError(f"{name} holds {given.dtype}: expected a row of real numbers") from error
     if row.ndim != 1:
         raise ParameterError(f"{name} has shape {row.shape}: expected one row of samples")
     if len(row) < fewest:
@@ -73,7 +74,10 @@ def within(
     open_upper: bool = False,
 ) -> float:
     """A finite number between two bounds, either of which may be excluded."""
-    number = float(value)
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
     inside = (lower < number if open_lower else lower <= number) and (number < upper if open_upper else number <= upper)
     if math.isfinite(number) and inside:
         return number
@@ -89,8 +93,8 @@ def positive(name: str, value: float, unit: str = "") -> float:
 
 def whole(name: str, value: int, lower: int) -> int:
     """A whole number of at least `lower`."""
-    if isinstance(value, bool) or int(value) != value or value < lower:
-        raise ParameterError(f"{name} = {value}: expected a whole number of at least {lower}")
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < lower:
+        raise ParameterError(f"{name} = {value!r}: expected a whole number of at least {lower}")
     return int(value)
 
 

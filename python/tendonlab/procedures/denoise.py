@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import detrend
 
+from tendonlab.errors import ParameterError
 from tendonlab.procedures.check import choice, samples, whole, within
 
 GAUSSIAN = 0.6745  # median of |x| of a standard normal variable: turns a median into an sd
@@ -42,7 +43,10 @@ def wavelet_denoise(
     Raises ParameterError for fewer samples than one level needs, numbers that are not finite, an unknown wavelet or
     mode; ImportError without PyWavelets (extra `procedures`)."""
     pywt = _pywavelets()
-    choice("wavelet", wavelet, pywt.wavelist(kind="discrete"))
+    if wavelet not in pywt.wavelist(kind="discrete"):
+        raise ParameterError(
+            f"wavelet = {wavelet!r}: expected a discrete wavelet of PyWavelets, such as 'db4' or 'sym8'"
+        )
     choice("mode", mode, MODES)
     shortest = 2 * (pywt.Wavelet(wavelet).dec_len - 1)
     row = samples("values", values, fewest=max(shortest, 2))

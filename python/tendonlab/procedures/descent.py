@@ -16,7 +16,7 @@ from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.procedures.check import samples
 
 SAME_COST = 1e-4  # relative: starts that end this near the best have found the same optimum
-NEAR_BOUND = 1e-3  # of the range: an optimum this near a bound is also tried on it, as interior steps never get there
+AT_BOUND = 1e-6  # of the range: descents stay inside the box and come as near as this and nearer
 STEP = 6e-6  # of the range, for central differences
 DEPENDENT = 1e-7  # singular value of the normalised Jacobian, relative to the greatest, that differences call 0
 
@@ -89,39 +89,26 @@ class Descent:
             cost = 0.5 * float(np.sum(self(unit) ** 2))
         return cost if math.isfinite(cost) else math.inf
 
-    def least(self, start: np.ndarray, *, free: np.ndarray | None = None, tolerance: float = 1e-8) -> Any | None:
-        """Least squares over the `free` coordinates, from `start`; None where the residual is not finite."""
+    def least(self, start: np.ndarray, *, tolerance: float = 1e-8) -> Any | None:
+        """Bounded least squares from `start`; None where the residual is not finite there or on the way."""
         if not math.isfinite(self.cost(start)):
             return None
-        moved = np.ones(len(start), dtype=bool) if free is None else free
-        whole = start.copy()
-
-        def residual(part: np.ndarray) -> np.ndarray:
-            whole[moved] = part
-            return self(whole)
-
         self._broke = False
-        within = np.clip(start[moved], 1e-10, 1.0 - 1e-10)
+        inside = np.clip(start, 1e-10, 1.0 - 1e-10)
         limits = {"ftol": tolerance, "xtol": tolerance, "gtol": tolerance, "max_nfev": 200 * len(start)}
         try:
-            end = least_squares(residual, within, bounds=(0.0, 1.0), **limits)
+            return least_squares(self, inside, bounds=(0.0, 1.0), **limits)
         except (ValueError, np.linalg.LinAlgError):
             if not self._broke:  # then it is the caller's own
                 raise
             return None
-        whole[moved] = end.x
-        end.x = whole
-        return end
 
     def polish(self, unit: np.ndarray) -> np.ndarray:
-        """The optimum to the last digits, and on the bounds that it is near, if the cost is no higher there."""
-        best = self._better(unit, self.least(unit, tolerance=1e-14))
-        near = np.where(best < NEAR_BOUND, 0.0, np.where(best > 1.0 - NEAR_BOUND, 1.0, best))
-        free = near == best
-        if free.all():
-            return best
-        end = self.least(near, free=free, tolerance=1e-14) if free.any() else None
-        return self._better(best, end) if end is not None else min((near, best), key=self.cost)
+        """The optimum to the last digits, and exactly on the bounds that it has come to."""
+        end = self.least(unit, tolerance=1e-14)
+        best = unit if end is None else min((unit, end.x), key=self.cost)
+        snapped = np.where(best < AT_BOUND, 0.0, np.where(best > 1.0 - AT_BOUND, 1.0, best))
+        return snapped if self.cost(snapped) <= self.cost(best) * (1.0 + 1e-9) else np.asarray(best)
 
     def jacobian(self, unit: np.ndarray) -> np.ndarray:
         """By central differences; one-sided at a bound."""
@@ -131,9 +118,6 @@ class Descent:
             ahead[k], behind[k] = min(unit[k] + STEP, 1.0), max(unit[k] - STEP, 0.0)
             columns.append((self(ahead) - self(behind)) / (ahead[k] - behind[k]))
         return np.column_stack(columns)
-
-    def _better(self, unit: np.ndarray, end: Any | None) -> np.ndarray:
-        return unit if end is None or end.cost > self.cost(unit) * (1.0 + 1e-10) else np.asarray(end.x)
 
 
 def multistart(descent: Descent, points: np.ndarray, progress: bool) -> Found:

@@ -79,7 +79,7 @@ def reactive_torque(
 
     Raises ParameterError: unequal lengths, numbers that are not finite, a lever not above 0, creep without time."""
     positive("lever", lever, "m")
-    first, second = calibration if isinstance(calibration, tuple) else (calibration, calibration)
+    first, second = (calibration, calibration) if isinstance(calibration, LoadCell) else calibration
     readings = samples("force_1", force_1), samples("force_2", force_2)
     if len(readings[0]) != len(readings[1]):
         raise ParameterError(f"force_2 has {len(readings[1])} samples: expected {len(readings[0])}, as many as force_1")

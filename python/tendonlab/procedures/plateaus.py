@@ -10,11 +10,12 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures.check import along, interval, times, within
-from tendonlab.procedures.runs import stretches, trimmed
+from tendonlab.procedures.runs import blocks, of_samples, stretches, trimmed
 from tendonlab.signals import white_noise_sd
 
 NOISE = 5.0  # sd of noise that still count as none
 REST = 0.01  # share of the greatest speed that counts as rest
+FINE = 100  # samples of the shortest plateau that are looked at: a finer record is averaged in blocks
 COLUMNS = ["start", "end", "speed", "torque", "sd", "num_samples"]
 
 
@@ -64,13 +65,15 @@ def steady_averages(
 def _plateaus(time: np.ndarray, velocity: np.ndarray, tolerance: float, shortest: float) -> list[slice]:
     dt = interval(time)
     within("shortest", shortest, 9.5 * dt, time[-1] - time[0], "s, 10 samples to the record's length")
-    num = 2 * int(0.25 * shortest / dt) + 1  # half of the shortest plateau: its other half is then free of ramps
-    level = savgol_filter(velocity, num, 1)
-    change = np.abs(savgol_filter(velocity, num, 1, deriv=1, delta=dt)) * shortest
-    noise = white_noise_sd(velocity) * float(np.linalg.norm(savgol_coeffs(num, 1, deriv=1, delta=dt))) * shortest
-    moving = np.abs(level) > REST * np.max(np.abs(level))
-    steady = moving & (change < np.maximum(tolerance * np.abs(level), NOISE * noise))
-    return [p for p in stretches(steady) if (p.stop - p.start) * dt >= 0.5 * shortest]
+    size = max(1, int(shortest / dt / FINE))
+    v, step = blocks(velocity, size), dt * size
+    num = 2 * int(0.25 * shortest / step) + 1  # half of the shortest plateau: its other half is then free of ramps
+    level, change = (savgol_filter(v, num, 1, deriv=d, delta=step) for d in range(2))
+    noise = [white_noise_sd(v) * float(np.linalg.norm(savgol_coeffs(num, 1, deriv=d, delta=step))) for d in range(2)]
+    moving = np.abs(level) > max(REST * float(np.max(np.abs(level))), NOISE * noise[0])
+    allowed = np.maximum(tolerance * np.abs(level) / shortest, NOISE * noise[1])
+    found = (of_samples(s, size, len(time)) for s in stretches(moving & (np.abs(change) < allowed)))
+    return [s for s in found if (s.stop - s.start) * dt >= 0.5 * shortest]
 
 
 def _split(

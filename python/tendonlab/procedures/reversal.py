@@ -40,9 +40,11 @@ def reversal_mask(
     if not v.any():
         raise ParameterError("velocity = 0 throughout: expected a motion")
     keep = np.abs(v) >= share * np.max(np.abs(v))
-    for begin, end in _spans(t, v, rest):
-        keep &= (t < begin - around) | (t > end + around)
-    return np.asarray(keep)
+    begin, end = _spans(t, v, rest).T
+    latest = np.searchsorted(begin - around, t, side="right") - 1  # the last reversal to have begun
+    near = latest >= 0
+    near[near] = t[near] <= end[latest[near]] + around
+    return np.asarray(keep & ~near)
 
 
 def _spans(time: np.ndarray, velocity: np.ndarray, rest: float) -> np.ndarray:
@@ -50,13 +52,15 @@ def _spans(time: np.ndarray, velocity: np.ndarray, rest: float) -> np.ndarray:
     within("rest", rest, 0.0, 1.0, open_upper=True)
     moving = np.flatnonzero(np.abs(velocity) > rest * np.max(np.abs(velocity)))
     turns = np.flatnonzero(np.diff(np.sign(velocity[moving])))
-    spans = [_zeros(time, velocity, slice(moving[k], moving[k + 1] + 1)) for k in turns]
-    return np.array(spans, dtype=float).reshape(-1, 2)
+    zeros = _zeros(time, velocity)
+    first = np.searchsorted(zeros, time[moving[turns]])
+    last = np.searchsorted(zeros, time[moving[turns + 1]], side="right") - 1
+    return np.column_stack([zeros[first], zeros[last]])
 
 
-def _zeros(time: np.ndarray, velocity: np.ndarray, part: slice) -> tuple[float, float]:
-    t, v = time[part], velocity[part]
-    crossed = np.flatnonzero(np.sign(v[:-1]) * np.sign(v[1:]) < 0.0)
-    roots = t[crossed] - v[crossed] * (t[crossed + 1] - t[crossed]) / (v[crossed + 1] - v[crossed])
-    zeros = np.concatenate([roots, t[v == 0.0]])
-    return float(zeros.min()), float(zeros.max())
+def _zeros(time: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Times at which the velocity is 0 or crosses it."""
+    at = np.flatnonzero(np.sign(velocity[:-1]) * np.sign(velocity[1:]) < 0.0)
+    share = velocity[at] / (velocity[at] - velocity[at + 1])
+    roots = np.minimum(time[at] + share * (time[at + 1] - time[at]), time[at + 1])  # rounding may lead past the sample
+    return np.sort(np.concatenate([roots, time[velocity == 0.0]]))

@@ -11,13 +11,12 @@ from numpy.typing import ArrayLike
 from scipy.stats import qmc
 
 from tendonlab.procedures.check import choice, whole
-from tendonlab.procedures.descent import Box, Descent, evolution, multistart, rank_of, sd_of
+from tendonlab.procedures.descent import AT_BOUND, Box, Descent, evolution, multistart, rank_of, sd_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 METHODS = ("multistart", "evolution")
-AT_BOUND = 1e-6  # of the range between the bounds
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,11 +8,12 @@ from scipy.signal import savgol_coeffs, savgol_filter
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures.check import along, interval, positive, times, within
-from tendonlab.procedures.runs import stretches, trimmed
+from tendonlab.procedures.runs import blocks, of_samples, stretches, trimmed
 from tendonlab.signals import white_noise_sd
 
 FEWEST = 20  # samples of a record
-WINDOW = 0.05  # share of the record over which the acceleration is taken
+MOST = 2000  # samples that are looked at: a longer record is averaged in blocks
+WINDOW = 0.05  # share of the record over which the acceleration is taken; a steady part is no shorter
 DRIFT = 0.1  # share of the greatest speed by which a steady speed may change, were it to last the whole record
 NOISE = 5.0  # sd of noise that still count as none
 MOVING = 0.1  # share of the greatest speed from which on something moves
@@ -28,28 +29,32 @@ def steady_segment(time: ArrayLike, position: ArrayLike, *, tolerance: float | N
     no steady motion. For records with several speeds see `steady_averages`. S0 section 2.3; the rule is reconstructed.
 
     Raises ParameterError: fewer than 20 samples, uneven sampling, `tolerance` not above 0, `trim` not in [0, 0.5),
-    a position that does not move or no steady stretch of at least 5 samples."""
+    a position that does not move, or is steady for less than 5 % of the record."""
     within("trim", trim, 0.0, 0.5, open_upper=True)
     t = times(time, fewest=FEWEST)
     y = along(t, "position", position)
-    dt = interval(t)
-    num = max(7, 2 * int(0.5 * WINDOW * len(t)) + 1)
-    speed = np.abs(savgol_filter(y, num, 2, deriv=1, delta=dt))
-    acceleration = np.abs(savgol_filter(y, num, 2, deriv=2, delta=dt))
-    fastest = float(speed.max())
-    if fastest * (t[-1] - t[0]) <= 1e-12 * float(np.max(np.abs(y))):
-        raise ParameterError(f"position = {y[0]} throughout: expected a position that moves")
-    if tolerance is None:
-        noise = white_noise_sd(y) * float(np.linalg.norm(savgol_coeffs(num, 2, deriv=2, delta=dt)))
-        tolerance = max(DRIFT * fastest / (t[-1] - t[0]), NOISE * noise)
-    positive("tolerance", tolerance, "1/s^2 times the unit of position")
-    found = stretches((acceleration < tolerance) & (speed > MOVING * fastest))
-    longest = max(found, key=lambda s: s.stop - s.start, default=slice(0, 0))
-    kept = trimmed(longest, trim)
-    if kept.stop - kept.start < 5:
-        least = float(acceleration[speed > MOVING * fastest].min())
+    if tolerance is not None:
+        positive("tolerance", tolerance, "1/s^2 times the unit of position")
+    size = max(1, len(t) // MOST)
+    found = stretches(_steady(blocks(y, size), interval(t) * size, tolerance))
+    longest = max((of_samples(s, size, len(t)) for s in found), key=lambda s: s.stop - s.start, default=slice(0, 0))
+    if longest.stop - longest.start < WINDOW * len(t):
         raise ParameterError(
-            f"tolerance = {tolerance:.3g}: expected one that leaves 5 samples of steady motion; the least "
-            f"|acceleration| in motion is {least:.3g}"
+            f"position is steady for {longest.stop - longest.start} samples at most: expected at least {WINDOW:.0%} of "
+            f"{len(t)}; a tolerance above {'the default' if tolerance is None else f'{tolerance:g}'} would find more"
         )
-    return kept
+    return trimmed(longest, trim)
+
+
+def _steady(position: np.ndarray, dt: float, tolerance: float | None) -> np.ndarray:
+    """Which samples are of steady motion."""
+    num = max(7, 2 * int(0.5 * WINDOW * len(position)) + 1)
+    smooth, velocity, acceleration = (savgol_filter(position, num, 2, deriv=d, delta=dt) for d in range(3))
+    speed, duration, noise = np.abs(velocity), dt * (len(position) - 1), white_noise_sd(position)
+    rounding = 1e-12 * float(np.max(np.abs(position)))
+    if np.ptp(smooth) <= max(NOISE * noise, rounding):
+        raise ParameterError(f"position stays within {np.ptp(smooth):.3g} of {smooth[0]:.6g}: expected one that moves")
+    if tolerance is None:
+        unsure = noise * float(np.linalg.norm(savgol_coeffs(num, 2, deriv=2, delta=dt)))
+        tolerance = max(DRIFT * float(speed.max()) / duration, NOISE * unsure)
+    return np.asarray((np.abs(acceleration) < tolerance) & (speed > MOVING * speed.max()))
