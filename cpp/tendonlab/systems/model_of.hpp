@@ -150,12 +150,16 @@ class ModelOf final : public Model {
     out.gradient.assign(cells * seeds.size(), 0.0);
     if (settings.ports) out.port.assign(Of<double>::ports.size() * 4 * experiment.time.size(), 0.0);
     if (seeds.empty()) run<double>(with, experiment, seeds, 0, 0, settings, out);
+    constexpr int words = systems::gradient_words<Of<double>>;
     for (std::size_t first = 0; first < seeds.size();) {
       const std::size_t left = seeds.size() - first;
-      if (left <= 8)
-        run<Gradient<1>>(with, experiment, seeds, first, left, settings, out), first += left;
+      const bool wide = words > 1 && left > 8;
+      const std::size_t count = std::min<std::size_t>(left, wide ? 8 * words : 8);
+      if (wide)
+        run<Gradient<words>>(with, experiment, seeds, first, count, settings, out);
       else
-        run<Gradient<2>>(with, experiment, seeds, first, std::min<std::size_t>(left, 16), settings, out), first += 16;
+        run<Gradient<1>>(with, experiment, seeds, first, count, settings, out);
+      first += count;
     }
     return out;
   }

@@ -17,6 +17,7 @@ struct RigidJoint {
                                                   {"joint_velocity", "velocity of the joint", Dimension::flow, -1}}};
   static constexpr std::array<std::string_view, 0> structural{};
   static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
+  static constexpr int gradient_words = 2;
   static constexpr bool commanded = true;    ///< input 0 is the command of an actuator
   static constexpr bool plain_names = true;  ///< parameters of the nominal effects carry no element in front
 

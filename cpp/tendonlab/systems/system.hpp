@@ -100,6 +100,15 @@ struct StatedOf<System, std::enable_if_t<(System::stated > 0)>> : std::integral_
 template <class System>
 inline constexpr int stated = StatedOf<System>::value;
 
+template <class System, class = void>
+struct GradientWordsOf : std::integral_constant<int, 1> {};
+template <class System>
+struct GradientWordsOf<System, std::enable_if_t<(System::gradient_words > 0)>>
+    : std::integral_constant<int, System::gradient_words> {};
+/// How many eights of derivatives one simulation carries: more cost time to compile, fewer to run.
+template <class System>
+inline constexpr int gradient_words = GradientWordsOf<System>::value;
+
 template <class System>
 constexpr bool drives_a_port() {
   for (const auto& port : System::ports)

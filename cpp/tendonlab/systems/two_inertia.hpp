@@ -25,6 +25,7 @@ struct TwoInertia {
   static constexpr std::array<std::string_view, 1> structural{"cable:compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:coulomb", "motor:viscous", "joint:coulomb",
                                                            "joint:viscous"};
+  static constexpr int gradient_words = 2;
   static constexpr bool commanded = true;  ///< input 0 is the command of an actuator
   static constexpr bool plain_names = false;
 
