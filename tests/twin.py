@@ -26,12 +26,11 @@ import pickle
 from pathlib import Path
 import tendonlab
 
-def _known(rig, *, progress=True):
-    assert rig.name == _found.dataset
-    return _found
+def _known(rig, **options):
+    return _found if rig.name == _found.dataset else _diagnose(rig, **options)
 
 _found = pickle.loads(Path({path!r}).read_bytes())
-tendonlab.diagnose = _known
+_diagnose, tendonlab.diagnose = tendonlab.diagnose, _known
 """
 
 
