@@ -38,11 +38,12 @@ inline double abs(double a) {
   return std::fabs(a);
 }
 
-/// exp(x), 1e-15 relative in [-90, 700], flat below: inline, so that laws cost what the arithmetic costs (Estrin's
+/// exp(x), 1e-15 relative in [-90, 709], flat outside: inline, so that laws cost what the arithmetic costs (Estrin's
 /// scheme).
 TENDONLAB_INLINE double exp(double x) {
   constexpr double magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
   x = x > -90.0 ? x : -90.0;
+  x = x < 709.0 ? x : 709.0;
   double n = x * 1.4426950408889634 + magic;
   std::int64_t exponent;
   std::memcpy(&exponent, &n, sizeof n);

@@ -17,9 +17,10 @@ struct Arrowhead {
 template <class Slot, class T, int columns>
 struct SlotBlocks {
   static constexpr int has = Slot::states;
-  static constexpr bool seen[4] = {(Slot::sees & sees_velocity) != 0, (Slot::sees & sees_position) != 0,
-                                   (Slot::sees & sees_load) != 0, (Slot::sees & sees_wrap) != 0};
-  static constexpr int outer = seen[0] + seen[1] + seen[2] + seen[3], inner = outer + has;
+  static constexpr bool seen[5] = {(Slot::sees & sees_velocity) != 0, (Slot::sees & sees_position) != 0,
+                                   (Slot::sees & sees_load) != 0, (Slot::sees & sees_wrap) != 0,
+                                   (Slot::sees & sees_preload) != 0};
+  static constexpr int outer = seen[0] + seen[1] + seen[2] + seen[3] + seen[4], inner = outer + has;
   Response<T> value;
   T force_by[columns], rate_by[columns], force_z{}, decay{};
 
@@ -40,6 +41,8 @@ struct SlotBlocks {
     seed(s.position, port.position, seen[1]);
     seed(s.load, port.load, seen[2]);
     seed(s.wrap, port.wrap, seen[3]);
+    seed(s.preload, port.preload, seen[4]);
+    s.skew = L(port.skew.value);  // no motion changes how a sheath is bent
     L own(z);
     if constexpr (has > 0) own.d[inner - 1] = T(1.0);
     const Response<L> f = slot.respond(s, own);
