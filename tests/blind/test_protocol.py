@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
+import shlex
 import sys
 import tomllib
 from pathlib import Path
@@ -11,29 +13,26 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from sealed_cases import Drawn
 
-from tendonlab.blind import draw, run, score
+from tendonlab.blind import commands, draw, run, score
 from tendonlab.blind.commands import add_parser
 from tendonlab.blind.draw import plan
 from tendonlab.blind.rig import EFFECTS
 from tendonlab.blind.run import command
 from tendonlab.blind.twin import make_twin
 
-BUNDLED = Path(__file__).parents[2] / "data" / "two_inertia"
-
-
-@pytest.fixture(scope="module")
-def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("blind")
-    return draw(15, 4, folder, jobs=1, num_samples=120, step=2e-4, progress=False)
+ROOT = Path(__file__).parents[2]
+BUNDLED = ROOT / "data" / "two_inertia"
+README = ROOT / "README.md"
 
 
 def read(path: Path) -> dict:
     return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
-def test_drawn_folders_are_complete(drawn: Path):
-    cases = sorted((drawn / "cases").iterdir())
+def test_drawn_folders_are_complete(drawn: Drawn):
+    cases = sorted(drawn.cases.iterdir())
     assert [case.name for case in cases] == [f"case-{i:03d}" for i in range(1, 5)]
     for case in cases:
         dataset = read(case / "dataset.toml")
@@ -48,14 +47,14 @@ def test_drawn_folders_are_complete(drawn: Path):
             assert np.all(np.isfinite(table.to_numpy()))
 
 
-def test_truth_lies_outside_the_cases(drawn: Path):
+def test_truth_lies_outside_the_cases(drawn: Drawn):
     words = ("truth", "sealed", "verdict", "parameters_only", "stribeck", "gap_noise")
-    for path in (drawn / "cases").rglob("*"):
+    for path in drawn.cases.rglob("*"):
         assert "sealed" not in path.name
         if path.suffix == ".toml":
             assert not any(word in path.read_text(encoding="utf-8") for word in words)
-    for case in (drawn / "cases").iterdir():
-        sealed = read(drawn / "sealed" / f"{case.name}.toml")
+    for case in drawn.cases.iterdir():
+        sealed = read(drawn.sealed / f"{case.name}.toml")
         assert sealed["format"] == "tendonlab-sealed/1"
         nominal = read(case / "dataset.toml")["system"]
         for effect in sealed["effects"]:
@@ -64,11 +63,19 @@ def test_truth_lies_outside_the_cases(drawn: Path):
         assert all(isinstance(value, float) for value in sealed["truth"].values())
 
 
-def test_draw_refuses_to_overwrite(drawn: Path):
-    with pytest.raises(FileExistsError, match="expected a new folder"):
-        draw(11, 1, drawn, progress=False)
+def test_draw_refuses_to_overwrite(drawn: Drawn, tmp_path: Path):
+    with pytest.raises(FileExistsError, match=r"cases exists: expected a new folder"):
+        draw(11, 1, drawn.cases.parent, progress=False)
+    with pytest.raises(FileExistsError, match=r"truth exists: expected a new folder"):
+        draw(11, 1, tmp_path / "new", sealed=drawn.sealed, progress=False)
     with pytest.raises(ValueError, match="count = 0"):
-        draw(11, 0, drawn / "new", progress=False)
+        draw(11, 0, tmp_path / "new", progress=False)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_truth_is_drawn_beside_the_cases_unless_told_where(tmp_path: Path):
+    draw(15, 1, tmp_path, jobs=1, num_samples=120, step=2e-4, progress=False)
+    assert (tmp_path / "sealed" / "case-001.toml").is_file()
 
 
 def test_every_effect_has_its_turn():
@@ -118,10 +125,10 @@ def fake_reports(monkeypatch: pytest.MonkeyPatch, sealed: Path, *, right: bool) 
 
 
 @pytest.mark.parametrize("right", [True, False])
-def test_run_and_score(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, right: bool):
-    fake_reports(monkeypatch, drawn / "sealed", right=right)
-    verdicts = run(drawn / "cases", tmp_path, jobs=2, progress=False)
-    result = score(drawn / "sealed", tmp_path)
+def test_run_and_score(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, right: bool):
+    fake_reports(monkeypatch, drawn.sealed, right=right)
+    verdicts = run(drawn.cases, tmp_path, jobs=2, progress=False)
+    result = score(drawn.sealed, tmp_path)
     assert len(json.loads(verdicts.read_text())["reports"]) == 4
     assert result.summary["top1"] == result.summary["top3"] == float(right)
     assert result.summary["verdict right"] == 1.0 if right else result.summary["verdict right"] < 1.0
@@ -131,34 +138,28 @@ def test_run_and_score(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert "top1" in str(result)
 
 
-def test_changed_report_is_noticed(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    fake_reports(monkeypatch, drawn / "sealed", right=False)
-    run(drawn / "cases", tmp_path, progress=False)
-    fake_reports(monkeypatch, drawn / "sealed", right=True)
+def test_changed_report_is_noticed(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    fake_reports(monkeypatch, drawn.sealed, right=False)
+    run(drawn.cases, tmp_path, progress=False)
+    fake_reports(monkeypatch, drawn.sealed, right=True)
     before = (tmp_path / "case-001" / "report.json").read_text()
-    run(drawn / "cases", tmp_path, progress=False)
+    run(drawn.cases, tmp_path, progress=False)
     assert (tmp_path / "case-001" / "report.json").read_text() == before  # resumed, not run again
     (tmp_path / "case-001" / "report.json").write_text(before.replace("0.9", "0.8"))
     with pytest.raises(ValueError, match="is not the report that was hashed"):
-        score(drawn / "sealed", tmp_path)
+        score(drawn.sealed, tmp_path)
 
 
-def test_failed_case_is_recorded(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_failed_case_is_recorded(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     script = "import sys; sys.exit('out of luck')"
     module = sys.modules["tendonlab.blind.run"]
     monkeypatch.setattr(module, "command", lambda case, out: [sys.executable, "-c", script])
-    verdicts = json.loads(run(drawn / "cases", tmp_path, progress=False).read_text())["reports"]
+    verdicts = json.loads(run(drawn.cases, tmp_path, progress=False).read_text())["reports"]
     assert verdicts["case-001"] == {"verdict": "failed", "message": "exit 1: out of luck"}
-    assert score(drawn / "sealed", tmp_path).summary["top1"] == 0.0
+    assert score(drawn.sealed, tmp_path).summary["top1"] == 0.0
 
 
-def test_run_refuses_a_truth_within_reach(tmp_path: Path):
-    case = tmp_path / "cases" / "case-001"
-    case.mkdir(parents=True)
-    (case / "dataset.toml").write_text("")
-    (tmp_path / "cases" / "sealed").mkdir()
-    with pytest.raises(ValueError, match="out of reach"):
-        run(tmp_path / "cases", tmp_path / "out", progress=False)
+def test_run_needs_cases(tmp_path: Path):
     with pytest.raises(ValueError, match=r"dataset\.toml, found none"):
         run(tmp_path / "nothing", tmp_path / "out", progress=False)
 
@@ -168,15 +169,39 @@ def test_command_is_given_the_case_and_nothing_else():
     assert words[1:] == ["-m", "tendonlab", "diagnose", "cases/case-001", "--out", "out/case-001", "--no-figures"]
 
 
-def test_command_line_scores(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
-    fake_reports(monkeypatch, drawn / "sealed", right=True)
+def test_command_line_scores(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
+    fake_reports(monkeypatch, drawn.sealed, right=True)
     parser = argparse.ArgumentParser()
     add_parser(parser.add_subparsers(dest="command", required=True))
     for words in (
-        ["blind", "run", str(drawn / "cases"), "--out", str(tmp_path)],
-        ["blind", "score", str(drawn / "sealed"), str(tmp_path), "--csv", str(tmp_path / "score.csv")],
+        ["blind", "run", str(drawn.cases), "--out", str(tmp_path)],
+        ["blind", "score", str(drawn.sealed), str(tmp_path), "--csv", str(tmp_path / "score.csv")],
     ):
         given = parser.parse_args(words)
         assert given.run(given) == 0
     assert "top1" in capsys.readouterr().out
     assert len(pd.read_csv(tmp_path / "score.csv")) == 4
+
+
+def test_flow_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
+    """Its commands as written, on cases fewer and shorter than it draws, by a diagnosis that knows the answers."""
+
+    def draw_less(seed: int, count: int, out: Path, *, sealed: Path | None, jobs: int) -> Path:
+        return draw(seed, min(count, 2), out, sealed=sealed, jobs=1, num_samples=120, step=2e-4, progress=False)
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(commands, "draw", draw_less)
+    lines = re.findall(r"^python -m tendonlab\.blind (.*)$", README.read_text(encoding="utf-8"), re.M)
+    assert [line.split()[0] for line in lines] == ["draw", "run", "score"]
+    fake_reports(monkeypatch, Path(shlex.split(lines[2])[1]), right=True)
+    for line in lines:
+        monkeypatch.setattr(sys, "argv", ["blind", *shlex.split(line)])
+        assert commands.main() == 0, capsys.readouterr().err
+    assert re.search(r"verdict right +1\n", capsys.readouterr().out)
+
+
+def test_refusal_is_one_line_and_exit_code_2(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
+    (tmp_path / "answers.toml").write_bytes((drawn.sealed / "case-001.toml").read_bytes())
+    monkeypatch.setattr(sys, "argv", ["blind", "run", str(drawn.cases), "--out", str(tmp_path)])
+    assert commands.main() == 2
+    assert capsys.readouterr().err.startswith(f"ValueError: {tmp_path / 'answers.toml'}: a sealed truth")

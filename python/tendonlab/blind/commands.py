@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -29,13 +30,17 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=explain)
     verbs = parser.add_subparsers(dest="verb", metavar="draw|run|score")
 
-    drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth into OUT/sealed")
+    drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
+    drawing.add_argument(
+        "--sealed", type=Path, help="new folder of the truth, outside OUT (default OUT/sealed: move it before `run`)"
+    )
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
     drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
 
-    running = _verb(verbs, "run", _run, "diagnose every case, resuming where it was interrupted, and hash the reports")
+    text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
+    running = _verb(verbs, "run", _run, text)
     running.add_argument("cases", type=Path, metavar="CASES")
     running.add_argument("--out", type=Path, required=True, help="folder of the reports and verdicts.json")
     running.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
@@ -54,7 +59,7 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 
 
 def _draw(given: argparse.Namespace) -> int:
-    print(draw(given.seed, given.count, given.out, jobs=given.jobs))
+    print(draw(given.seed, given.count, given.out, sealed=given.sealed, jobs=given.jobs))
     return 0
 
 
@@ -79,4 +84,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tendonlab.blind", description=text)
     _add_verbs(parser)
     given = parser.parse_args()
-    return int(given.run(given))
+    try:
+        return int(given.run(given))
+    except (ValueError, OSError) as error:
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+        return 2

@@ -1,4 +1,4 @@
-"""Draw blind cases: dataset folders under OUT/cases, their truth under OUT/sealed."""
+"""Draw blind cases: dataset folders under OUT/cases, their truth in a folder of its own."""
 
 from __future__ import annotations
 
@@ -25,27 +25,30 @@ def draw(
     count: int,
     out: Path | str,
     *,
+    sealed: Path | str | None = None,
     jobs: int = 2,
     num_samples: int = NUM_SAMPLES,
     step: float = FINE_STEP,
     progress: bool = True,
 ) -> Path:
-    """Draw `count` cases into `out` and return it; about 70 % lack one effect, 15 % nothing, 15 % have wrong
+    """Draw `count` cases into `out`/cases and return `out`; about 70 % lack one effect, 15 % nothing, 15 % have wrong
     parameters only.
 
-    The same seed gives the same cases whatever `jobs`. Raises ValueError if count < 1, FileExistsError if `out`
-    holds cases already.
+    The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
+    The same seed gives the same cases whatever `jobs`. Raises ValueError if count < 1, FileExistsError if one of the
+    two folders exists.
     """
-    out = Path(out)
+    cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
-    for part in ("cases", "sealed"):
-        if (out / part).exists():
-            raise FileExistsError(f"{out / part} exists: expected a new folder to draw into")
-        (out / part).mkdir(parents=True)
+    for folder in (cases, sealed):
+        if folder.exists():
+            raise FileExistsError(f"{folder} exists: expected a new folder to draw into")
+    for folder in (cases, sealed):
+        folder.mkdir(parents=True)
     kinds = plan(seed, count)
     batches = [list(enumerate(kinds))[i : i + BATCH] for i in range(0, count, BATCH)]
-    work = partial(_draw_batch, seed=seed, out=out, num_samples=num_samples, step=step)
+    work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
     with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
         if jobs <= 1:
             for batch in batches:
@@ -54,7 +57,7 @@ def draw(
             with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
                 for done in pool.map(work, batches):
                     bar.update(done)
-    return out
+    return Path(out)
 
 
 def plan(seed: int, count: int) -> list[tuple[str, str]]:
@@ -71,7 +74,7 @@ def plan(seed: int, count: int) -> list[tuple[str, str]]:
 
 
 def _draw_batch(
-    batch: Sequence[tuple[int, tuple[str, str]]], *, seed: int, out: Path, num_samples: int, step: float
+    batch: Sequence[tuple[int, tuple[str, str]]], *, seed: int, cases: Path, sealed: Path, num_samples: int, step: float
 ) -> int:
     settled: dict[int, tuple[Rig, Strength]] = {}
     redrawn: dict[int, list[str]] = {index: [] for index, _ in batch}
@@ -89,8 +92,8 @@ def _draw_batch(
     for i, run in zip(settled, record(*_columns(settled), step=step), strict=True):
         name = f"case-{i + 1:03d}"
         rig, strength = settled[i]
-        write_dataset(rig, run, out / "cases" / name, name=name, description=DESCRIPTION)
-        (out / "sealed" / f"{name}.toml").write_text(sealed_toml(rig, strength, redrawn=redrawn[i]), encoding="utf-8")
+        write_dataset(rig, run, cases / name, name=name, description=DESCRIPTION)
+        (sealed / f"{name}.toml").write_text(sealed_toml(rig, strength, redrawn=redrawn[i]), encoding="utf-8")
     return len(batch)
 
 

@@ -13,6 +13,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from .reach import refuse_truth
+
 REPORT = "report.json"
 VERDICTS = "verdicts.json"
 
@@ -25,15 +27,14 @@ def command(case: Path, out: Path) -> list[str]:
 def run(cases: Path | str, out: Path | str, *, jobs: int = 1, progress: bool = True) -> Path:
     """Diagnose all cases into `out`/<id>, skipping those that have a report, and return `out`/verdicts.json.
 
-    A case that fails is recorded there as "failed" with the last line it wrote. Raises ValueError where `cases`
-    holds no dataset or a truth file within reach ("sealed" in a name).
+    A case that fails is recorded there as "failed" with the last line it wrote. Raises ValueError where `cases` holds
+    no dataset, or where a truth lies below `cases`, beside it or below `out`, see `refuse_truth`.
     """
     cases, out = Path(cases).resolve(), Path(out).resolve()
     folders = sorted(path.parent for path in cases.glob("*/dataset.toml"))
     if not folders:
         raise ValueError(f"{cases}: expected folders with a dataset.toml, found none")
-    refuse_truth(cases)
-    refuse_truth(out)
+    refuse_truth(cases.parent, out)
     out.mkdir(parents=True, exist_ok=True)
     failed: dict[str, str] = {}
     todo = [folder for folder in folders if not (out / folder.name / REPORT).exists()]
@@ -45,12 +46,6 @@ def run(cases: Path | str, out: Path | str, *, jobs: int = 1, progress: bool = T
             if message:
                 failed[pending[future]] = message
     return _seal(out, [folder.name for folder in folders], failed)
-
-
-def refuse_truth(folder: Path) -> None:
-    """Raise ValueError if anything below `folder` is named "sealed": the diagnosis could read the answers."""
-    for path in sorted(folder.rglob("*sealed*")) if folder.exists() else ():
-        raise ValueError(f"{path}: a sealed truth within the folder of the cases; expected it elsewhere, out of reach")
 
 
 def sha256(path: Path) -> str:

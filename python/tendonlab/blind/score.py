@@ -44,7 +44,7 @@ class Score:
     def to_dict(self) -> dict[str, object]:
         """Plain types: summary and rows."""
         rows = json.loads(self.cases.reset_index().to_json(orient="records"))
-        return {"summary": self.summary, "cases": rows}
+        return {"format": "tendonlab-score/1", "summary": self.summary, "cases": rows}
 
 
 def score(sealed: Path | str, reports: Path | str) -> Score:
