@@ -98,6 +98,7 @@ class Sheaths:
         friction: Sequence[float],
         periods: float,
         start: float,
+        release: float,
     ) -> dict[str, Floats]: ...
 
 class Signal:

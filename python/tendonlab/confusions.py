@@ -37,6 +37,17 @@ CONFUSIONS = (
     Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
     ),
+    Confusion(
+        ("sheath:pretension_loss", "a smaller friction coefficient of the sheath"),
+        "a friction coefficient from runs whose pretension is sure; wrap angles far apart",
+    ),
+    Confusion(
+        ("sheath:slack", "sheath:load_dependence"), "torques below and above 2 r T_s, at more than one pretension"
+    ),
+    Confusion(
+        ("sheath:presliding", "sheath:distributed_presliding", "sensor.output_torque:delay"),
+        "partial reversals of the torque beside full ones, slow and fast",
+    ),
 )
 
 

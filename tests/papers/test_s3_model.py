@@ -64,6 +64,20 @@ def test_jumps_where_the_gate_opens_are_told() -> None:
     np.testing.assert_allclose(found.jumps, [10.0 + offset], rtol=1e-6)
 
 
+def test_a_gate_with_hysteresis_does_not_chatter() -> None:
+    """Noise about the threshold: with a release at 0.8 of it the gate opens once."""
+    rng = np.random.default_rng(0)
+    v = np.linspace(0.5, 1.3, 400) + rng.normal(0.0, 0.03, 400)
+    opened = {}
+    for release in (1.0, 0.8):
+        gate = predict(
+            np.full(400, 9.0), v, shape=SHAPE, T_s=264.8, p=paper_parameters(), dt=1e-3, release=release
+        ).gate
+        opened[release] = int(np.sum((gate[1:] >= 0.5) & (gate[:-1] < 0.5)))
+    assert opened[0.8] == 1
+    assert opened[1.0] > 3
+
+
 def test_units_of_velocity_are_converted() -> None:
     tau, v = drive(1000.0)
     degrees = predict(tau, v, shape=SHAPE, T_s=264.8, p=SOFT, dt=1e-3).tau_out

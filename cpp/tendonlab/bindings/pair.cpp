@@ -38,14 +38,15 @@ Sheaths make_sheaths(Numbers arc_length, Numbers turning, double pretension, dou
 }
 
 /// The whole law sample by sample (S3 eq. 19-21). `friction`: mu_d, mu_s, v_s, v_threshold, s_v in the unit of
-/// velocity.
+/// velocity. An open gate shuts at `release` times its threshold, so that noise about it does not make it chatter.
 py::dict transmit(const Sheaths& of, const Array& torque, const Array& velocity, const std::array<double, 5>& friction,
-                  double periods, double start) {
+                  double periods, double start, double release) {
+  require_within("release", release, 0.0, 1.0, "1");
   if (torque.ndim() != 1 || velocity.ndim() != 1 || torque.size() != velocity.size())
     throw ParameterError(sentence("input_torque and velocity with ", torque.size(), " and ", velocity.size(),
                                   " numbers: expected as many of both, in one row"));
   const transmission::SheathCapstan<double> capstan{friction[0], friction[1], friction[2]};
-  const transmission::VelocityGate<double> gate{friction[3], friction[4]};
+  bool is_open = false;
   const auto count = static_cast<std::size_t>(torque.size());
   const auto samples = torque.size();
   Numbers output(count), open(count), coefficient(count);
@@ -59,6 +60,8 @@ py::dict transmit(const Sheaths& of, const Array& torque, const Array& velocity,
       const Pair pair = of.at(coefficient[k]);
       last = coefficient[k], gain = pair.torque_gain(), offset = pair.offset();
     }
+    const transmission::VelocityGate<double> gate{is_open ? release * friction[3] : friction[3], friction[4]};
+    is_open = gate.steepness(at.velocity) >= 0.0;
     const double target = gain * torque.data()[k] + direction * offset;
     held = transmission::follow(target, held, gate.kept(at.velocity, periods));
     output[k] = held, open[k] = gate.open(at.velocity);
@@ -87,7 +90,7 @@ void bind_pair(py::module_& module) {
            py::arg("input_radius"), py::arg("output_radius"), py::arg("uniform_pretension"))
       .def("at", &Sheaths::at, py::arg("friction_coefficient"), "The pair at one friction coefficient.")
       .def("transmit", &transmit, py::kw_only(), py::arg("input_torque"), py::arg("velocity"), py::arg("friction"),
-           py::arg("periods"), py::arg("start"),
+           py::arg("periods"), py::arg("start"), py::arg("release"),
            "Output torque, gate and friction coefficient sample by sample, each with `periods` periods of the gate.");
 }
 }  // namespace tendonlab::bindings

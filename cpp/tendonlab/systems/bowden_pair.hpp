@@ -17,7 +17,7 @@ struct BowdenPair {
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
   static constexpr bool sampled = true, commanded = false, plain_names = true;
-  static constexpr std::size_t carried = 4;    ///< output of the gate, friction that turns, torque before it, travel
+  static constexpr std::size_t carried = 3;    ///< output of the gate, torque that is held, travel of the drive
   static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
   static constexpr std::array<Port, 1> ports{{{"sheath"}}};
   static constexpr std::array<Input, 2> inputs{
@@ -62,21 +62,20 @@ struct BowdenPair {
   Sample<T, 1, 1> evaluate(const Inputs& in, Memory& memory) const {
     const auto& sheath = std::get<0>(slot);
     const T torque = driving(in), velocity = in.template input<1>();
-    T& travel = memory.own[3];
+    T& travel = memory.own[2];
     travel = travel + in.dt * velocity;
     Sliding<T> at = sliding(velocity, travel, T((output_radius / input_radius) * torque), wrap_angle);
     at.preload = 2.0 * output_radius * pretension;
     const Sliding<T> seen = moved(at);
     const T friction = answer(sheath, at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
-    if (!memory.begun) memory.own = {middle, T(0.0), middle, travel};
+    if (!memory.begun) memory.own = {middle, middle, travel};
     T output = gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
     each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
-      memory.own[1] = law.turned(memory.own[1], T(middle - memory.own[2]), sheath.dry_level(seen));
+      memory.own[1] = law.held(memory.own[1], middle, sheath.dry_level(seen));
       T smooth{};
       sheath.template each<role::force>([&](const auto& other) { smooth = smooth + other.force(seen); });
-      output = output + law.share * (middle - memory.own[1] - smooth - output);
+      output = output + law.share * (memory.own[1] - smooth - output);
     });
-    memory.own[2] = middle;
     return {{output}, {at}, {friction}};
   }
 

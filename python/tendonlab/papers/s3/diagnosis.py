@@ -67,10 +67,11 @@ def _runs(
     runs: Sequence[tuple[int, float, str, float, float]],
     *,
     seed: int,
+    repeats: int = 1,
     slack: bool = False,
     pretension_scale: float = 1.0,
 ) -> tuple[Record, ...]:
-    """A record for each (shape, reading in kg, kind, amplitude in N·m, period in s)."""
+    """`repeats` records for each (shape, reading in kg, kind, amplitude in N·m, period in s)."""
     return tuple(
         run_chain(
             number,
@@ -82,7 +83,7 @@ def _runs(
             sample_rate=SAMPLE_RATE,
             duration=DURATION,
         )
-        for k, (number, reading, kind, amplitude, period) in enumerate([*runs, *runs])
+        for k, (number, reading, kind, amplitude, period) in enumerate([run for _ in range(repeats) for run in runs])
     )
 
 
@@ -94,7 +95,7 @@ def _slack() -> Withheld:
     return Withheld(
         effect="sheath:slack",
         told="friction grows with the torque above 2 r T_s",
-        records=_runs(fitted, seed=1, slack=True),
+        records=_runs(fitted, seed=1, repeats=2, slack=True),
         held_out=_runs(judged, seed=11, slack=True),
     )
 
@@ -106,7 +107,7 @@ def _pretension_loss() -> Withheld:
     return Withheld(
         effect="sheath:pretension_loss",
         told="true pretension 0.8 of the reading",
-        records=_runs([*fitted, (8, 30.0, "sine", 15.0, 10.0)], seed=21, pretension_scale=0.8),
+        records=_runs([*fitted, (8, 30.0, "sine", 15.0, 10.0)], seed=21, repeats=2, pretension_scale=0.8),
         held_out=_runs(judged, seed=31, pretension_scale=0.8),
         friction_known=True,
     )
@@ -119,7 +120,7 @@ def _presliding() -> Withheld:
     return Withheld(
         effect="sheath:distributed_presliding",
         told="the cable stretches from its input on before its far end moves",
-        records=_runs([(*group, *commanded) for group in fitted for commanded in both], seed=41),
+        records=_runs([(*group, *commanded) for group in fitted for commanded in both], seed=41, repeats=2),
         held_out=_runs([(*group, *commanded) for group in judged for commanded in both], seed=61),
     )
 

@@ -13,7 +13,7 @@ import pandas as pd
 from tendonlab.data import Dataset, Experiment
 from tendonlab.data.dataset import NominalParameter, SignalSpec
 from tendonlab.papers.s3.chain import TORQUE_NOISE_SD, Chain, with_noise
-from tendonlab.papers.s3.model import GATE_PERIOD, Prediction, mean_squared_error, predict_log
+from tendonlab.papers.s3.model import Prediction, mean_squared_error, predict_log
 from tendonlab.papers.s3.rig import DEGREE, FrictionParameters, Rig, assumed_rig, cable_pretension
 from tendonlab.papers.s3.shapes import BumpShape, paper_shape
 from tendonlab.papers.s3.trajectories import Trajectory, table_1
@@ -192,9 +192,3 @@ def _experiment(record: Record, split: str, index: int) -> Experiment:
         repeat=record.name,
         conditions={"pretension": record.pretension, "wrap_angle": record.shape.wrap_angle},
     )
-
-
-def sample_period(log: pd.DataFrame) -> float:
-    """s between the samples of a log; the gate's own is GATE_PERIOD."""
-    time = log.index.to_numpy(dtype=float)
-    return float((time[-1] - time[0]) / (len(time) - 1)) if len(time) > 1 else GATE_PERIOD

@@ -48,12 +48,15 @@ def predict(
     velocity_unit: str = "deg/s",
     gate_period: float = GATE_PERIOD,
     pretension_profile: str = "decaying",
+    release: float = 1.0,
 ) -> Prediction:
     """Output torque of the pair under `tau_in`, N·m, (n,), and velocity `v` of motor A in `velocity_unit`, (n,).
 
     `shape` of the sheaths, `T_s` N a cable, `p` the friction law, `dt` s between samples, `y0` N·m the output before
     the first. `gate_period`, s: the sample period for which the gate's share of eq. 21 is meant; over another one it is
-    raised to the power dt/gate_period. Raises ParameterError for unequal lengths or numbers out of their bounds."""
+    raised to the power dt/gate_period. `release` < 1: an open gate shuts only at that share of its threshold, against
+    chatter by noise of the velocity (better still, low-pass it: `tendonlab.procedures.lowpass`).
+    Raises ParameterError for unequal lengths or numbers out of their bounds."""
     if not (dt > 0 and gate_period > 0):
         raise ParameterError(f"dt = {dt}, gate_period = {gate_period}: expected positive periods, s")
     rig = assumed_rig() if rig is None else rig
@@ -61,6 +64,7 @@ def predict(
     run = sheaths(shape, T_s, rig.r_in, rig.r_out, pretension_profile).transmit(
         input_torque=np.asarray(tau_in, dtype=float), velocity=np.asarray(v, dtype=float),
         friction=[law.mu_d, law.mu_s, law.v_s, law.v_thres, law.s_v], periods=periods(dt, gate_period), start=y0,
+        release=release,
     )  # fmt: skip
     return Prediction(run["output_torque"], run["gate"], run["friction_coefficient"])
 
