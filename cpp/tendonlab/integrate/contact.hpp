@@ -22,6 +22,7 @@ class Contact {
         directed[port.direction] = directed[port.direction] || slot.directed();
         dry[port.direction] = dry[port.direction] || slot.has(role::level);
         prescribed[port.direction] = port.driven;
+        weightless[port.direction] = is_weightless(i);
       }
       if constexpr (port.side >= 0) {
         side_port[port.side] = i;
@@ -33,8 +34,12 @@ class Contact {
   /// The port that stands for mode m.
   int bearer(int m) const { return representative[m]; }
 
-  /// Is the velocity of mode m an input? Then it has a direction and never sticks.
-  bool driven(int m) const { return prescribed[m]; }
+  /// Does mode m go straight from one direction to the other? Where its velocity is an input, and where what slides
+  /// weighs next to nothing and cannot stick: the push on it at rest is nothing but rounding.
+  template <class Inputs>
+  bool only_turns(int m, const Y& y, const F& frame, const Inputs& in) const {
+    return prescribed[m] || (weightless[m] && stick_level(m, 1.0, y, frame, in) == 0.0);
+  }
 
   template <class Inputs>
   T sliding_velocity(int m, const Y& y, const F& frame, const Inputs& in) const {
@@ -229,6 +234,12 @@ class Contact {
       sum += plain(geometry.lever[a][j]) * plain(geometry.inverse_inertia[j]) * plain(geometry.lever[b][j]);
     return sum;
   }
+  /// Does port i move nothing but what has no inertia of its own?
+  static constexpr bool is_weightless(int i) {
+    bool light = systems::stated<System> < n;
+    for (int j = 0; j < systems::stated<System>; ++j) light = light && !System::joined[i][j];
+    return light && !System::ports[static_cast<std::size_t>(i)].driven;
+  }
   /// The first port of the mode of port i: the one that stands for it.
   static constexpr int bearer_of(int i) {
     int first = 0;
@@ -263,6 +274,7 @@ class Contact {
   }
 
   int representative[directions > 0 ? directions : 1] = {}, side_port[num_modes] = {};
-  bool directed[num_modes] = {}, dry[num_modes] = {}, gapped[num_modes] = {}, prescribed[num_modes] = {};
+  bool directed[num_modes] = {}, dry[num_modes] = {}, gapped[num_modes] = {}, prescribed[num_modes] = {},
+       weightless[num_modes] = {};
 };
 }  // namespace tendonlab::integrate

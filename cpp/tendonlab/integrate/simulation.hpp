@@ -207,7 +207,7 @@ class Simulation {
   }
   void turn_direction(int m, std::array<bool, num_modes>& turning) {
     const auto i = static_cast<std::size_t>(m);
-    if (contact.driven(m)) {
+    if (contact.only_turns(m, y, frame, drive)) {
       frame.mode[i] = -frame.mode[i];
     } else if (frame.mode[i] == 0.0) {
       frame.mode[i] = contact.holding(y, frame, drive)[i] < 0 ? -1.0 : 1.0;

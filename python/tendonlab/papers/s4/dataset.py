@@ -79,11 +79,14 @@ def _toml(of: Case, believed: Nominal, name: str) -> str:
         "initial_wrap_angle": (m.theta_w0, 0),
         "inertia": (m.J, 0),
         "friction_coefficient": (believed.mu, 0.03),
-        "static_friction_coefficient": (c.mu_s / c.mu_c * believed.mu, 0.03),
-        "stribeck_velocity": (c.v_s, 2e-5),
-        "bristle_stiffness": (c.sigma_0, 0.3 * c.sigma_0),
-        "bristle_damping": (c.sigma_1, 0.5 * c.sigma_1),
         "contact_viscous": (c.sigma_2, 0.3 * c.sigma_2),
+        "static_friction_coefficient": (c.mu_s / c.mu_c * believed.mu, 0),  # what the paper keeps as in Table III
+        "stribeck_velocity": (c.v_s, 0),
+        "bristle_stiffness": (c.sigma_0, 0),
+        "bristle_damping": (c.sigma_1, 0),
+        "smallest_level": (c.eps, 0),
+        "stribeck_share": (1.0, 0),
+        "presliding_share": (1.0, 0),
     }
     if believed.knows_direction:
         effects.append("contact:asymmetry")

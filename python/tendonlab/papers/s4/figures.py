@@ -95,8 +95,10 @@ def draw_stiffness(ax: Any, *, mechanism: Mechanism, mu: float, reach: float, sp
         x, y = np.meshgrid(np.rad2deg(theta), sign * np.linspace(0.0, speed, 9))
         k = np.tile(stiffness(theta, sign=sign, mechanism=mechanism, mu=mu), (9, 1))
         ax.plot_surface(x, np.rad2deg(y), k, color=colour, alpha=0.75, lw=0)
-    ax.set(xlabel=r"$\theta_1$ (°)", ylabel=r"rate of $\theta_1$ (°/s)")
-    ax.set_zlabel("stiffness (N·m/rad)", labelpad=8)
+    ax.set(xlabel=r"$\theta_1$ (°)", ylabel=r"rate of $\theta_1$ (°/s)", xticks=(-10, 0, 10), yticks=(-15, 0, 15))
+    ax.set(zticks=(290, 295, 300, 305))
+    ax.set_zlabel("stiffness (N·m/rad)", labelpad=4)
+    ax.view_init(elev=24, azim=-52)
     return ax
 
 
@@ -109,7 +111,7 @@ def draw_angles(ax: Axes, run: pd.DataFrame) -> Axes:
     other = ax.twinx()
     other.plot(run.index, deg(synchronous_error(run)), color=ORANGE, lw=0.9, label=r"error $\Delta\theta$")
     other.set_ylabel(r"synchronous error $\Delta\theta$ (°)", color=ORANGE)
-    other.spines[["top"]].set_visible(False)
+    other.spines["right"].set_visible(True)
     lines = [*ax.get_lines(), *other.get_lines()]
     ax.legend(lines, [str(line.get_label()) for line in lines], loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
     return other
@@ -157,7 +159,7 @@ def draw_fit(ax: Axes, read: pd.DataFrame, simulated: pd.DataFrame, *, name: str
     ax.plot(read.index, read[name], ".", color=INK, ms=1.2, alpha=0.5, label="measured (twin)")
     ax.plot(simulated.index, simulated[name], color=ORANGE, lw=1.2, label="simulated")
     ax.set(xlabel="time (s)", ylabel=f"$T_{{{name[1:]}}}$ (N)")
-    ax.legend(loc="upper right", markerscale=5)
+    ax.legend(loc="center", markerscale=5)
     return ax
 
 
@@ -166,5 +168,5 @@ def draw_coefficient(ax: Axes, time: np.ndarray, mu: np.ndarray, kept: np.ndarra
     ax.plot(time, mu, ".", color=MUTED, ms=1.2, label="all samples: spikes at reversals")
     ax.plot(time[kept], mu[kept], ".", color=BLUE, ms=1.5, label="away from reversals")
     ax.set(xlabel="time (s)", ylabel=r"$\mu_{c,21}$ (1)", ylim=(0.0, 0.3))
-    ax.legend(loc="lower right", markerscale=6)
+    ax.legend(loc="upper right", markerscale=6)
     return ax

@@ -1,0 +1,41 @@
+"""S4's own gaps, withheld from the simulator of its twin: elastic ends against a mere softer cable, and a friction
+coefficient that differs by direction."""
+
+from pathlib import Path
+
+import pytest
+
+import tendonlab as tl
+from tendonlab.diagnose import Diagnosis
+from tendonlab.papers import s4
+
+
+def diagnosed(folder: Path, of: s4.Case, *, knows_direction: bool) -> Diagnosis:
+    rig = s4.write_rig(folder, of, s4.nominal(knows_direction=knows_direction), name=folder.name)
+    return tl.diagnose(tl.load(rig), progress=False)
+
+
+def test_the_direction_of_friction_is_found(tmp_path: Path) -> None:
+    found = diagnosed(tmp_path / "direction", s4.case("E1"), knows_direction=False)
+    assert found.verdict == "effect"
+    assert found.selected == ("contact:asymmetry",)
+    asymmetry = found.effects[0].parameters["coefficient_asymmetry"]["value"]
+    assert asymmetry == pytest.approx((0.178 - 0.155) / (0.178 + 0.155), abs=2e-3)
+    assert found.shrinkage["from_refitted"]["value"] > 0.8
+
+
+def test_elastic_ends_are_found(tmp_path: Path) -> None:
+    """Tuning alone takes them for a softer cable; the loop that is left tells."""
+    found = diagnosed(tmp_path / "ends", s4.case("E2"), knows_direction=True)
+    assert found.verdict == "effect"
+    assert found.selected == ("ends:compliance",)
+    compliance = found.effects[0].parameters["compliance"]["value"]
+    assert compliance == pytest.approx(1 / (5 * 5.023e4), rel=0.02)
+    assert found.shrinkage["from_refitted"]["value"] > 0.8
+
+
+def test_a_softer_cable_is_a_softer_cable(tmp_path: Path) -> None:
+    """Of nearly the same amplitude and tensions as the rig with elastic ends, and yet nothing but a parameter."""
+    found = diagnosed(tmp_path / "softer", s4.softer(s4.case("E1"), k=3.596e4), knows_direction=True)
+    assert found.verdict == "parameters_only"
+    assert found.selected == ()
