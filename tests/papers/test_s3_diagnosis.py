@@ -1,4 +1,4 @@
-"""S3's own gap, withheld on its twin, must be ranked first (S3 sec. 6): slack, lost pretension, presliding."""
+"""S3's own gap, withheld on its twin, must be ranked first: slack, lost pretension, presliding."""
 
 from __future__ import annotations
 

@@ -4,13 +4,14 @@
 namespace tendonlab::actuation {
 /// Inertia of a drive whose torque was logged before it: what accelerates the drive does not reach the transmission.
 ///
-///   u -> u - J dv/dt                                                      (S3 sec. 6, the twin's J_A)
+///   u -> u - J dv/dt                                                      (balance of a drive; what S3 leaves out)
 ///
 /// u: effort of the drive, N·m (N). v: its velocity, an input of the system, rad/s (m/s). J: inertia, kg·m² (kg).
 /// J = 0 switches it off. No memory. The system takes the rate from its input; by itself the law changes no signal.
 template <class T>
 struct DriveInertia {
-  static constexpr std::string_view name = "drive_inertia", source = "S3 sec. 6", equation = "u - J dv/dt",
+  static constexpr std::string_view name = "drive_inertia", source = "balance of a drive, left out in S3",
+                                    equation = "u - J dv/dt",
                                     summary = "inertia of the drive, whose torque was logged before it";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T inertia;

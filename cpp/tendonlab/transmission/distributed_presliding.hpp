@@ -6,13 +6,13 @@ namespace tendonlab::transmission {
 /// held until the friction of the whole sheath has turned over. A play in torque, where the gate of S3 is one in
 /// velocity.
 ///
-///   y[k] = min(max(y[k-1], m - g), m + g),   tau -> (1 - a) tau + a (y - F)          (play operator, S4; S3 sec. 6)
+///   y[k] = min(max(y[k-1], m - g), m + g),   tau -> (1 - a) tau + a (y - F)          (play operator, S4)
 ///
 /// m: output torque without friction, g: dry friction level, F: friction that has no memory, N·m (N). a: share of it;
 /// 1: no gate. a = 0 switches it off. Memory: y, kept by the system.
 template <class T>
 struct DistributedPresliding {
-  static constexpr std::string_view name = "distributed_presliding", source = "S4 play operator; S3 sec. 6",
+  static constexpr std::string_view name = "distributed_presliding", source = "S4 play operator, in torque",
                                     equation = "(1 - a) tau + a (y - F), y = min(max(y, m - g), m + g)",
                                     summary =
                                         "presliding spread along the cable: the output is held until the friction of "

@@ -4,13 +4,13 @@
 namespace tendonlab::transmission {
 /// Pretension loss: a constant share of the pretension that was read is not there where the cable slides.
 ///
-///   P -> P (1 - c)                                                         (S3 sec. 6, T_s -> scale T_s)
+///   P -> P (1 - c)                                                         (S3 eq. 12, T_s)
 ///
 /// P: torque (tension) that the pretension holds, N·m (N). c < 0: more pretension than was read. c = 0 switches it off.
 /// No memory. Changes what the later laws see, friction and slack alike.
 template <class T>
 struct PretensionLoss {
-  static constexpr std::string_view name = "pretension_loss", source = "S3 sec. 6", equation = "T_s (1 - c)",
+  static constexpr std::string_view name = "pretension_loss", source = "S3 eq. 12, T_s", equation = "T_s (1 - c)",
                                     summary = "pretension loss: a share of the pretension is missing";
   static constexpr unsigned roles = role::motion | role::refines, sees = sees_preload;
   T pretension_loss;

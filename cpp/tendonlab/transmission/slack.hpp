@@ -4,7 +4,7 @@
 namespace tendonlab::transmission {
 /// Slack: above the torque that the pretension holds the returning tendon is loose, and friction grows with the torque.
 ///
-///   g -> g (1 + a max(0, |tau|/P - 1)),   P = 2 r T_s                      (S3 sec. 6; T_3 = 0 in eq. 15, 17)
+///   g -> g (1 + a max(0, |tau|/P - 1)),   P = 2 r T_s                      (S3 eq. 15, 17 where T_3 = 0)
 ///
 /// tau: torque carried, N·m. P: torque that the pretension holds, N·m. a: 1 where the loose tendon carries nothing,
 /// so that all is on the other one. a = 0 switches it off. No memory.

@@ -25,7 +25,7 @@ def sort_markers(points: np.ndarray, *, proximal: np.ndarray | None = None) -> n
     """Markers, m, shape (n, 2) or (n, 3), in their order along the sheath: first the one nearest to `proximal` (the
     drive's end; the first row unless given), then always the nearest of those left.
 
-    Raises DatasetError for fewer than four markers, or two at one place. Source: S3 sec. III."""
+    Raises DatasetError for fewer than four markers, or two at one place."""
     points = _checked(points)
     start = points[0] if proximal is None else np.asarray(proximal, dtype=float)
     left = list(range(len(points)))

@@ -57,7 +57,7 @@ def withheld(case: str) -> Withheld:
     """One of the cases "slack" (above 2 r T_s one tendon is loose), "pretension_loss" (true pretension 0.8 of the
     reading) and "presliding" (superposed torques, whose partial reversals only stretch the cable).
 
-    Raises ParameterError for another name. Source: S3 sec. 6."""
+    Raises ParameterError for another name."""
     if case not in _CASES:
         raise ParameterError(f"case = {case!r}: {nearest(case, list(_CASES))}")
     return _CASES[case]()

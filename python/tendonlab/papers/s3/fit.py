@@ -118,7 +118,7 @@ def fit_gradient(
 
 def weakness(records: Sequence[Record], p: FrictionParameters) -> pd.DataFrame:
     """How much each number matters: rise of the mean squared error, (N·m)², where it is 20 % smaller and larger, and
-    whether the data identify it (both rises above 5 % of the error itself). Source: S3 sec. 5.3 of the fit."""
+    whether the data identify it (both rises above 5 % of the error itself)."""
     objective = Objective(records)
     base = objective(p)
     rows = {}

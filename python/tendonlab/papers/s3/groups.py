@@ -84,7 +84,7 @@ def _exact_log(
     slack: bool,
     pretension_scale: float,
 ) -> pd.DataFrame:
-    """One integration a session: repeats of a run differ only by the noise of its sensors."""
+    """One integration for all: repeats of a run differ only by the noise of its sensors."""
     chain = Chain(
         shape=paper_shape(number), pretension=cable_pretension(reading), slack=slack, pretension_scale=pretension_scale
     )

@@ -1,4 +1,4 @@
-"""What the sliding phase of a record says by itself, before any model of the dead zone (S3 sec. III, Fig. 5)."""
+"""What the sliding phase of a record says by itself, before any model of the dead zone (S3 Fig. 5)."""
 
 from __future__ import annotations
 
