@@ -10,7 +10,6 @@ import tendonlab as tl
 from tendonlab.diagnose import Diagnosis
 from tendonlab.papers import s4
 
-
 TOLD = ("bristle_stiffness", "contact_viscous")
 
 
@@ -46,7 +45,7 @@ def test_a_softer_cable_is_a_softer_cable(tmp_path: Path) -> None:
 
 
 def test_the_rest_of_table_iii_can_be_fitted(tmp_path: Path) -> None:
-    """From 30 % off: stiffness of the bristles and viscous friction come back; mu_s and v_s hardly show at these speeds,
+    """From 30 % off: bristle stiffness and viscous friction come back; mu_s and v_s hardly show at these speeds,
     and their intervals say so."""
     folder = s4.write_rig(tmp_path / "known", s4.case("E1"), s4.nominal(knows_direction=True), name="known")
     rig = tl.load(folder)
