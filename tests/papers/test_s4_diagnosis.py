@@ -1,6 +1,7 @@
 """S4's own gaps, withheld from the simulator of its twin: elastic ends against a mere softer cable, and a friction
 coefficient that differs by direction."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,8 @@ import pytest
 import tendonlab as tl
 from tendonlab.diagnose import Diagnosis
 from tendonlab.papers import s4
+
+TOLD = ("bristle_stiffness", "contact_viscous")
 
 
 def diagnosed(folder: Path, of: s4.Case, *, knows_direction: bool) -> Diagnosis:
@@ -39,3 +42,17 @@ def test_a_softer_cable_is_a_softer_cable(tmp_path: Path) -> None:
     found = diagnosed(tmp_path / "softer", s4.softer(s4.case("E1"), k=3.596e4), knows_direction=True)
     assert found.verdict == "parameters_only"
     assert found.selected == ()
+
+
+def test_the_rest_of_table_iii_can_be_fitted(tmp_path: Path) -> None:
+    """From 30 % off: bristle stiffness and viscous friction come back; mu_s and v_s hardly show at these speeds,
+    and their intervals say so."""
+    folder = s4.write_rig(tmp_path / "known", s4.case("E1"), s4.nominal(knows_direction=True), name="known")
+    rig = tl.load(folder)
+    off = {name: replace(rig.parameters[name], value=0.7 * rig.parameters[name].value) for name in TOLD}
+    found = s4.identify_dynamic(replace(rig, parameters={**rig.parameters, **off})).parameters
+    assert found.loc["bristle_stiffness", "value"] == pytest.approx(1e6, rel=0.02)
+    assert found.loc["contact_viscous", "value"] == pytest.approx(500.0, rel=0.01)
+    assert found.loc["static_friction_coefficient", "sd"] > 0.01
+    for name, truth in (("bristle_damping", 1e3), ("stribeck_velocity", 5e-5), ("static_friction_coefficient", 0.2)):
+        assert found.loc[name, "ci95_lower"] < truth < found.loc[name, "ci95_upper"]

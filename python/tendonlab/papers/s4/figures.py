@@ -98,7 +98,7 @@ def draw_stiffness(ax: Any, *, mechanism: Mechanism, mu: float, reach: float, sp
     ax.set(xlabel=r"$\theta_1$ (°)", ylabel=r"rate of $\theta_1$ (°/s)", xticks=(-10, 0, 10), yticks=(-15, 0, 15))
     ax.set(zticks=(290, 295, 300, 305))
     ax.set_zlabel("stiffness (N·m/rad)", labelpad=4)
-    ax.view_init(elev=24, azim=-52)
+    ax.view_init(elev=32, azim=-70)
     return ax
 
 
@@ -158,8 +158,9 @@ def draw_fit(ax: Axes, read: pd.DataFrame, simulated: pd.DataFrame, *, name: str
     """Fig. 12, 14b: a measured tension and the simulated one."""
     ax.plot(read.index, read[name], ".", color=INK, ms=1.2, alpha=0.5, label="measured (twin)")
     ax.plot(simulated.index, simulated[name], color=ORANGE, lw=1.2, label="simulated")
-    ax.set(xlabel="time (s)", ylabel=f"$T_{{{name[1:]}}}$ (N)")
-    ax.legend(loc="center", markerscale=5)
+    low, high = float(read[name].min()), float(read[name].max())
+    ax.set(xlabel="time (s)", ylabel=f"$T_{{{name[1:]}}}$ (N)", ylim=(low - 2, high + 0.2 * (high - low)))
+    ax.legend(loc="upper center", ncols=2, markerscale=5)
     return ax
 
 
