@@ -8,7 +8,7 @@ from importlib import import_module
 
 import numpy as np
 
-from tendonlab.catalog import system_info
+from tendonlab.catalog import LEVEL, MEMORY, SystemInfo, system_info
 from tendonlab.system import System
 
 T = np.linspace(0.0, 1.0, 201)
@@ -34,14 +34,25 @@ def example(kind: str) -> Example:
     return found
 
 
+def ground(info: SystemInfo, effect: str) -> tuple[str, ...]:
+    """The Coulomb friction that a bristle takes over, where the nominal system has no dry friction in its element."""
+    one = info.effect(effect)
+    levels = {e.name for e in info.effects if e.element == one.element and e.roles & LEVEL}
+    bare = one.roles & MEMORY and not levels & set(info.default_nominal_effects)
+    return (f"{one.element}:coulomb",) if bare else ()
+
+
 def with_effect(kind: str, effect: str, *, off: bool = False) -> System:
     """The nominal system with `effect`, its parameters at their typical values, or its amplitudes at 0."""
     info, of = system_info(kind), example(kind)
-    values = {}
-    for name in info.effect(effect).parameters:
-        row = info.parameter(name)
-        typical = row.typical * of.scale(row.element or "", row.dimension)
-        values[name] = 0.0 if off and row.amplitude else of.parameters.get(name, typical)
     nominal = info.default_nominal_effects
-    effects = nominal if effect in nominal else (*nominal, effect)
+    beside = ground(info, effect)
+    effects = nominal if effect in nominal else (*nominal, *beside, effect)
+    values = {}
+    for each in (*beside, effect):
+        for name in info.effect(each).parameters:
+            row = info.parameter(name)
+            typical = row.typical * of.scale(row.element or "", row.dimension)
+            gone = off and row.amplitude and each == effect
+            values[name] = 0.0 if gone else of.parameters.get(name, typical)
     return System(kind=kind, parameters={**of.parameters, **values}, effects=effects)

@@ -48,12 +48,14 @@ def parameters(of: Constants) -> dict[str, float]:
 
 def system(of: Constants) -> System:
     """The simulator of the paper: motor, gear friction, cables, bushings by eq. 11; no ripple, no hold."""
-    return System(kind="cable_joint", parameters=parameters(of), effects=system_info("cable_joint").default_nominal_effects)
+    return System(
+        kind="cable_joint", parameters=parameters(of), effects=system_info("cable_joint").default_nominal_effects
+    )
 
 
 def nut_input(of: Constants, of_reference: Reference, *, every: int = 1) -> pd.DataFrame:
-    """What a nut controlled by velocity is asked to do: `actuator_velocity` = r cos(theta) theta' of the reference, m/s,
-    by time "t", s; `every`: one sample of so many."""
+    """What nuts controlled by velocity are asked to do: `actuator_velocity` = r cos(theta) theta' of the reference,
+    m/s, by time "t", s; `every`: one sample of so many."""
     asked = of.r * np.cos(of_reference.angle) * of_reference.velocity
     index = pd.Index(of_reference.time[::every], name="t")
     return pd.DataFrame({"actuator_velocity": asked[::every]}, index=index)
