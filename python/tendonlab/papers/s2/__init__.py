@@ -17,6 +17,7 @@ from tendonlab.papers.s2.identify import (
     fit_gear_friction,
     split_common_friction,
 )
+from tendonlab.papers.s2.orders import order_spectrum
 from tendonlab.papers.s2.reference import Reference, reference
 from tendonlab.papers.s2.rig import log_of_twin, nut_input, parameters, system, write_dataset
 from tendonlab.papers.s2.twin import PID, last_sense, measured, simulate
@@ -52,6 +53,7 @@ __all__ = [
     "log_of_twin",
     "measured",
     "nut_input",
+    "order_spectrum",
     "parameters",
     "reference",
     "shifted",
