@@ -129,7 +129,8 @@ def draw_motion(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float
 def mark_shifts(ax: Axes, shifts: pd.DataFrame) -> Axes:
     """Mark the time between the simulated and the measured jump of a force, T_shift, on `ax`."""
     low, high = ax.get_ylim()
-    height, above = low + 0.06 * (high - low), low + 0.09 * (high - low)
+    ax.set_ylim(low, high + 0.18 * (high - low))
+    height, above = high + 0.04 * (high - low), high + 0.07 * (high - low)
     for begin, end in zip(shifts["simulated_time"], shifts["measured_time"], strict=True):
         ax.annotate("", (end, height), (begin, height), arrowprops={"arrowstyle": "<->", "color": RED})
         ax.text(0.5 * (begin + end), above, r"$T_{shift}$", color=RED, ha="center")
