@@ -35,11 +35,19 @@ def example(kind: str) -> Example:
     return found
 
 
+def ground(info: SystemInfo, effect: str) -> tuple[str, ...]:
+    """A level of dry friction for an effect that only shapes one, where the nominal system has none in its element."""
+    one = info.effect(effect)
+    levels = [e.name for e in info.effects if e.element == one.element and e.roles & LEVEL]
+    bare = one.roles & MEMORY and levels and not set(levels) & set(info.default_nominal_effects)
+    return (levels[0],) if bare else ()
+
+
 def with_effect(kind: str, effect: str, *, off: bool = False) -> System:
     """The nominal system with `effect`, its parameters at their typical values, or its amplitudes at 0."""
     info, of = system_info(kind), example(kind)
     effects = [*info.default_nominal_effects, *of.effects]
-    effects += [name for name in (*_ground(info, effect), effect) if name not in effects]
+    effects += [name for name in (*ground(info, effect), effect) if name not in effects]
     values = {}
     for added in effects:
         for name in info.effect(added).parameters:
@@ -49,11 +57,3 @@ def with_effect(kind: str, effect: str, *, off: bool = False) -> System:
             typical = row.typical * (1.0 if row.purpose == "share" else of.scale(row.element or "", row.dimension))
             values[name] = 0.0 if off and added == effect and row.amplitude else of.parameters.get(name, typical)
     return System(kind=kind, parameters={**of.parameters, **values}, effects=tuple(effects))
-
-
-def _ground(info: SystemInfo, effect: str) -> tuple[str, ...]:
-    """A level of dry friction for an effect that only shapes one, where the nominal system has none there."""
-    of = info.effect(effect)
-    if not of.roles & MEMORY or any(info.effect(name).element == of.element for name in info.default_nominal_effects):
-        return ()
-    return (next(e.name for e in info.effects if e.element == of.element and e.roles & LEVEL),)

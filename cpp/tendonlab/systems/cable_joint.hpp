@@ -142,7 +142,7 @@ struct CableJoint {
     const S nut_velocity = nut.velocity * turning, guided = arm * at.velocity[0];
     set(c.port[cable_1], nut_velocity - guided, nut.position - anchor_distance * sin(theta) + rest_stretch);
     set(c.port[cable_2], -c.port[cable_1].velocity, -c.port[cable_1].position);
-    pass_bushings(c, theta, guided, nut_velocity, mode);
+    pass_bushings(c, theta, guided, nut_velocity, mode, idles);
     const S pull = tension<cable_1>(c) - tension<cable_2>(c), gravity_torque = weight(theta);
     const S known = load.apply(S{});
     set(c.port[joint], at.velocity[0], theta, 0.5 * (arm * pull - gravity_torque - known), mode[joint_sense]);
@@ -202,7 +202,7 @@ struct CableJoint {
   /// moved.
   template <class S, class Modes>
   void pass_bushings(MovingCoupling<S, num_ports, 2>& c, const S& theta, const S& guided, const S& nut_velocity,
-                     const Modes& mode) const {
+                     const Modes& mode, bool rests) const {
     const T& preload = std::get<transmission::TautCompliance<T>>(std::get<cable_1>(slot).laws).pretension;
     for (int i : {0, 1}) {
       const double forwards = i == 0 ? 1.0 : -1.0;
@@ -213,7 +213,8 @@ struct CableJoint {
       guide.wrap = theta;
       set(still, S(forwards * nut_velocity), guide.position, S{}, forwards * mode[nut_sense]);
     }
-    if (std::get<stiction_1>(slot).active == 0) return;
+    // A motor comes to rest by its own friction; only nuts that are prescribed rest while the joint still moves.
+    if (std::get<stiction_1>(slot).active == 0 || !rests) return;
     held<bushing_1, stiction_1>(c);
     held<bushing_2, stiction_2>(c);
   }

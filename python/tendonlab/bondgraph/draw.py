@@ -41,7 +41,8 @@ def draw(
     for bond in graph.bonds:
         _draw_bond(ax, bond, graph, places, found, inches)
     for element in graph.elements:
-        _write(ax, element, places[element.name], inches)
+        away = [places[b.other(element.name)] - places[element.name] for b in graph.at[element.name]]
+        _write(ax, element, places[element.name], _widest_gap(away), inches)
     return ax
 
 
@@ -58,14 +59,24 @@ def _scale(ax: Axes, xy: np.ndarray) -> float:
     return float(min(box.width / (high[0] - low[0]), box.height / (high[1] - low[1])) / figure.dpi)
 
 
-def _write(ax: Axes, element: Element, place: np.ndarray, inches: float) -> None:
+def _widest_gap(ways: list[np.ndarray]) -> np.ndarray:
+    """The direction farthest from all bonds: room for a label."""
+    angles = np.sort([np.arctan2(way[1], way[0]) for way in ways])
+    gaps = np.diff(np.append(angles, angles[0] + 2.0 * np.pi))
+    k = int(np.argmax(np.round(gaps, 6)))
+    middle = float(angles[k] + 0.5 * gaps[k])
+    return np.array([np.cos(middle), np.sin(middle)])
+
+
+def _write(ax: Axes, element: Element, place: np.ndarray, room: np.ndarray, inches: float) -> None:
     is_junction = isinstance(element, Junction)
     weight = "bold" if is_junction else "normal"
     x, y = place
     ax.text(x, y, element.text, ha="center", va="center", fontsize=_SIZE, color=INK, fontweight=weight, zorder=3)
     if is_junction and element.label:
-        aside = 0.1 / inches
-        ax.text(x + aside, y - aside, element.label, ha="left", va="top", fontsize=_SIZE - 1, color=MUTED, zorder=3)
+        aside = place + room * 0.26 / inches
+        small = _SIZE - 1.0
+        ax.text(aside[0], aside[1], element.label, ha="center", va="center", fontsize=small, color=MUTED, zorder=3)
 
 
 def _clearance(element: Element, direction: np.ndarray) -> float:

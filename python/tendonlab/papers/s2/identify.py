@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -125,11 +126,11 @@ def split_common_friction(branches: Mapping[str, float], theta: ArrayLike, tensi
 
 
 def effective_coefficients(branches: Mapping[str, float]) -> dict[str, float]:
-    """Friction coefficients that the branches amount to, (b_1j - b_2j) / 4, beyond and below the edges (S2 eqs 10, 11)."""
+    """Friction coefficients that the branches amount to, (b_1j - b_2j) / 4, beyond and below the edges (S2 eq. 10)."""
     return {side: (branches[f"b1{j}"] - branches[f"b2{j}"]) / 4.0 for side, j in (("beyond", 1), ("below", 2))}
 
 
-def bushing_law(branches: Mapping[str, float]) -> _core.friction.BushingBranches:
+def bushing_law(branches: Mapping[str, float]) -> Any:
     """The library's law with these parameters (S2 eq. 11)."""
     return _core.friction.BushingBranches(**{name: float(branches[name]) for name in BRANCHES})
 

@@ -59,7 +59,7 @@ def reference(
         moves.append((now, now + length))
         now += length + dwell
     count = round(((now - dwell + 1.0) if end is None else end) / step) + 1
-    time = np.arange(count) * step
+    time: Array = step * np.arange(count, dtype=np.float64)
     angle, velocity = np.full(count, float(points[0])), np.zeros(count)
     for begin, length, way in pieces:
         since = np.clip(time - begin, 0.0, length)

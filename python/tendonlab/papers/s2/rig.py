@@ -16,8 +16,8 @@ from tendonlab.papers.s2.reference import Reference, reference
 from tendonlab.papers.s2.twin import measured, simulate
 from tendonlab.system import System
 
-SAMPLE_TIME = 0.02  # s, of the logs of a twin
-EVERY = 20  # steps of the twin, 1 ms, a sample
+AROUND_JUMPS = 0.1  # s
+EVERY = 20  # steps of 1 ms a sample of a twin's log
 NOMINAL_SD = {"cable_stiffness": 200.0 / 1.96, "cable_damping": 700.0 / 1.96, "pretension": 2.0}  # Table II; assumed
 NOISE_SD = {"joint_angle": 2.4e-5, "joint_velocity": 2e-3, "cable_force_1": 1.5, "cable_force_2": 1.5}
 UNITS = {"joint_angle": "rad", "joint_velocity": "rad/s", "cable_force_1": "N", "cable_force_2": "N"}
@@ -48,12 +48,14 @@ def parameters(of: Constants) -> dict[str, float]:
 
 def system(of: Constants) -> System:
     """The simulator of the paper: motor, gear friction, cables, bushings by eq. 11; no ripple, no hold."""
-    return System(kind="cable_joint", parameters=parameters(of), effects=system_info("cable_joint").default_nominal_effects)
+    return System(
+        kind="cable_joint", parameters=parameters(of), effects=system_info("cable_joint").default_nominal_effects
+    )
 
 
 def nut_input(of: Constants, of_reference: Reference, *, every: int = 1) -> pd.DataFrame:
-    """What a nut controlled by velocity is asked to do: `actuator_velocity` = r cos(theta) theta' of the reference, m/s,
-    by time "t", s; `every`: one sample of so many."""
+    """What nuts controlled by velocity are asked to do: `actuator_velocity` = r cos(theta) theta' of the reference,
+    m/s, by time "t", s; `every`: one sample of so many."""
     asked = of.r * np.cos(of_reference.angle) * of_reference.velocity
     index = pd.Index(of_reference.time[::every], name="t")
     return pd.DataFrame({"actuator_velocity": asked[::every]}, index=index)
@@ -62,9 +64,16 @@ def nut_input(of: Constants, of_reference: Reference, *, every: int = 1) -> pd.D
 def log_of_twin(
     of: Constants, of_reference: Reference, *, ripple: float = 0.0, hold: bool = False, seed: int = 0
 ) -> pd.DataFrame:
-    """One record of the twin at 50 Hz: `actuator_velocity` by the drive, and what the sensors read."""
+    """One record of the twin at 50 Hz: `actuator_velocity` by the drive, and what the sensors read.
+
+    Forces are left out (NaN) within 0.1 s of the start and end of every move: a jump that falls between two samples
+    says nothing of its size (S2 sec. IV-B.3 leaves out 1 s)."""
     run = simulate(of, of_reference, ripple=ripple, sense="hold" if hold else "instantaneous")
-    return nut_input(of, of_reference, every=EVERY).join(measured(run.iloc[::EVERY], seed=seed))
+    log = nut_input(of, of_reference, every=EVERY).join(measured(run.iloc[::EVERY], seed=seed))
+    for instant in np.ravel(of_reference.moves):
+        near = np.abs(log.index.to_numpy() - instant) < AROUND_JUMPS
+        log.loc[near, ["cable_force_1", "cable_force_2"]] = np.nan
+    return log
 
 
 def write_dataset(

@@ -96,7 +96,7 @@ def _forces(of: Constants, motion: pd.DataFrame, reference: Reference, sense: Se
     path = path_error * (1.0 - np.cos(theta))
     velocity = of.r * np.cos(theta) * motion["theta_rate"].to_numpy()
     followed = {"hold": motion["nut_rate"].to_numpy(), "reference": reference.velocity}.get(sense, velocity)
-    found = {}
+    found: dict[str, Array] = {}
     for i, sign in enumerate((1.0, -1.0)):
         carried = equations.cable_force(of, sign * e + path, sign * rate)
         if sense == "smooth":

@@ -1,0 +1,78 @@
+"""The paper's own gaps, withheld on its twin: the diagnosis finds the ripple of the gear, and what holds the joint."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tendonlab as tl
+from tendonlab.errors import ParameterError
+from tendonlab.papers import s2
+
+RIG = s2.constants()
+
+
+@pytest.fixture(scope="module")
+def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> tl.Diagnosis:
+    rig = s2.write_dataset(tmp_path_factory.mktemp("ripple"), RIG, ripple=0.1)
+    return tl.diagnose(rig, progress=False)
+
+
+def test_the_ripple_is_selected(diagnosis: tl.Diagnosis) -> None:
+    assert diagnosis.verdict == "effect"
+    assert list(diagnosis.selected) == ["gear:ripple"]
+    found = diagnosis.effects[0]["parameters"]
+    assert found["ripple_sine"]["ci95"][0] < 0.1 < found["ripple_sine"]["ci95"][1]
+    assert found["ripple_cosine"]["ci95"][0] < 0.0 < found["ripple_cosine"]["ci95"][1]
+
+
+def test_the_gap_shrinks_by_more_than_80_percent(diagnosis: tl.Diagnosis) -> None:
+    assert diagnosis.shrinkage["from_refitted"]["value"] > 0.8
+    assert diagnosis.shrinkage["from_nominal"]["value"] > 0.8
+
+
+def test_the_ripple_cuts_the_error_of_the_velocity() -> None:
+    """G1 without noise: more than 80 % of the error's standard deviation at cruise goes."""
+    plan = s2.reference(end=15.0)
+    real = s2.simulate(RIG, plan, ripple=0.1)["theta_rate"]
+    plain = s2.system(RIG)
+    rippled = plain.with_effects({"gear:ripple": {"ripple_sine": 0.1, "ripple_cosine": 0.0}})
+    before, after = (
+        np.std((rig.simulate(s2.nut_input(RIG, plan))["joint_velocity"] - real).to_numpy()[plan.cruise()])
+        for rig in (plain, rippled)
+    )
+    assert before / 0.06 == pytest.approx(0.07, abs=0.01)
+    assert after < 0.2 * before
+
+
+def test_the_disturbance_goes_with_the_screw_and_not_with_time() -> None:
+    """Moves at two speeds: one line at one cycle a turn; by time there are two."""
+    errors, turns, times = [], [], []
+    for speed in (0.04, 0.08):
+        plan = s2.reference((0.0, 0.6), speed=speed)
+        run = s2.simulate(RIG, plan, ripple=0.1)
+        part = plan.cruise()
+        errors.append(((run["theta_rate"].to_numpy() - plan.velocity) / speed)[part])
+        turns.append((RIG.r * np.sin(plan.angle) / RIG.p)[part])
+        times.append(plan.time[part])
+    by_turn = s2.order_spectrum(np.concatenate(turns), np.concatenate(errors))
+    assert by_turn.idxmax() == pytest.approx(1.0, abs=0.03)
+    assert by_turn.max() == pytest.approx(0.1, abs=0.015)
+    by_time = s2.order_spectrum(np.concatenate(times), np.concatenate(errors))
+    assert by_time.max() < 0.7 * by_turn.max()
+    with pytest.raises(ParameterError, match="turns: 0 covered; expected one or more"):
+        s2.order_spectrum(np.zeros(5), np.zeros(5))
+
+
+def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path) -> None:
+    """G2: whatever keeps the joint from creeping back holds the sense. Friction of the joint does, and stiction of the
+    guides: these logs cannot tell, and the diagnosis says so."""
+    rig = s2.write_dataset(tmp_path, RIG, hold=True)
+    library = ["stiction:hold", "joint:coulomb", "joint:viscous", "gear:ripple", "bushing_1:coulomb", "load:offset"]
+    found = tl.diagnose(rig, library=library, progress=False)
+    assert found.verdict == "effect"
+    holds = {"stiction:hold", "joint:coulomb", "joint:viscous"}
+    assert set(found.selected) <= holds
+    assert len(found.selected) == 1
+    assert any("stiction:hold" in group and len(holds & set(group)) > 1 for group in found.indistinguishable)
+    assert found.shrinkage["from_refitted"]["value"] > 0.8
