@@ -51,9 +51,9 @@ struct BowdenPair {
                   "length of a sheath; cancels out of the torque"),
         parameter(&BowdenPair::cable_stiffness, "cable_stiffness", Dimension::force, Purpose::structure, 1e5, 1e-9, inf,
                   "axial stiffness EA of a cable; cancels out of the torque"),
-        parameter(&BowdenPair::pretension, "pretension", Dimension::force, Purpose::structure, 100.0, 0.0, inf,
+        parameter(&BowdenPair::pretension, "pretension", Dimension::force, Purpose::condition, 100.0, 0.0, inf,
                   "pretension of each cable"),
-        parameter(&BowdenPair::wrap_angle, "wrap_angle", Dimension::angle, Purpose::structure, 1.0, 0.0, inf,
+        parameter(&BowdenPair::wrap_angle, "wrap_angle", Dimension::angle, Purpose::condition, 1.0, 0.0, inf,
                   "angle that a sheath turns by on its whole length")};
   }
   void prepare() {}
