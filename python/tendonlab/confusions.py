@@ -30,6 +30,10 @@ CONFUSIONS = (
         "measuring both motor and joint; the motor's signal alone cannot tell",
     ),
     Confusion(
+        ("stiction:hold", "joint:coulomb"),
+        "a slow push on the resting joint: friction of the joint resists it, stiction of the guides does not",
+    ),
+    Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
     ),
 )
