@@ -25,6 +25,5 @@ def test_a_straight_cable_does_not_rub_and_half_a_turn_does() -> None:
     capstan = _core.friction.BushingCapstan(capstan_coefficient=0.2)
     assert capstan.level(wrap_angle=0.0, load=100.0) == 0.0
     assert capstan.level(wrap_angle=np.pi, load=100.0) == pytest.approx(87.446, abs=1e-3)  # by hand
-    assert _core.friction.BushingSine(sine_coefficient=0.2).level(wrap_angle=np.pi, load=100.0) == pytest.approx(
-        40.0, rel=1e-12
-    )
+    bisector = _core.friction.BushingSine(sine_coefficient=0.2).level(wrap_angle=np.pi, load=100.0)
+    assert bisector == pytest.approx(40.0, rel=1e-10)  # the core's own sine is good to 1e-11
