@@ -35,6 +35,10 @@ CONFUSIONS = (
         "the joint's power, and a wrong load does not turn its sign with the motion",
     ),
     Confusion(
+        ("stiction:hold", "joint:coulomb"),
+        "a slow push on the resting joint: friction of the joint resists it, stiction of the guides does not",
+    ),
+    Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
     ),
     Confusion(

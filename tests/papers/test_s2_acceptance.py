@@ -186,3 +186,25 @@ def test_what_is_wrong_is_named() -> None:
         s2.fit_cable(np.zeros(20), np.zeros(20), np.full(20, 100.0))
     with pytest.raises(ParameterError, match=r"velocity: 0 samples of sense -1; expected 20 or more"):
         s2.fit_bushing(np.linspace(0.0, 1.0, 50), np.ones(50), np.ones(50), tension=200.0)
+
+
+def test_a_path_that_grows_with_the_angle_is_no_friction() -> None:
+    """G3: an elastic path error adds the same force in both senses of motion, and moves nothing."""
+    plan = s2.reference()
+    plain, longer = (s2.simulate(RIG, plan, path_error=path) for path in (0.0, 3e-4))
+    assert np.array_equal(plain["theta"], longer["theta"])
+    added = (longer["F_act_1"] - plain["F_act_1"]).to_numpy()
+    theta, rate = plain["theta"].to_numpy(), plan.velocity
+    wanted = RIG.K * 3e-4 * (1.0 - np.cos(theta))
+    assert added[rate > 0] == pytest.approx(wanted[rate > 0], abs=1e-9)
+    assert added[rate < 0] == pytest.approx(wanted[rate < 0], abs=1e-9)
+
+
+def test_three_readings_of_a_misprinted_unit() -> None:
+    """Reading A asks 4.84 N*m and 47 A of the motor at 48 V / k_m; B and C are of the size of a bearing's."""
+    a, b, c = (s2.constants(viscous_reading=reading).c_m for reading in "ABC")
+    top = 48.0 / RIG.k_m
+    assert a * top == pytest.approx(4.84, abs=0.005)
+    assert a * top / RIG.k_m == pytest.approx(47.0, abs=0.5)
+    assert b == pytest.approx(9.854e-5, rel=1e-4)
+    assert c == pytest.approx(1.0319e-5, rel=1e-12)

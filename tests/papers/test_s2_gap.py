@@ -21,7 +21,7 @@ def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> tl.Diagnosis:
 def test_the_ripple_is_selected(diagnosis: tl.Diagnosis) -> None:
     assert diagnosis.verdict == "effect"
     assert list(diagnosis.selected) == ["gear:ripple"]
-    found = diagnosis.effects[0]["parameters"]
+    found = diagnosis.effects[0].parameters
     assert found["ripple_sine"]["ci95"][0] < 0.1 < found["ripple_sine"]["ci95"][1]
     assert found["ripple_cosine"]["ci95"][0] < 0.0 < found["ripple_cosine"]["ci95"][1]
 
