@@ -46,13 +46,32 @@ void for_each_law(System& system, F&& f) {
   });
 }
 
-/// Calls f(element, law name, table entry, field) for each parameter; the system's own have neither element nor law.
+template <class Law, class = void>
+struct PartnerOf {
+  static constexpr std::string_view name = Law::name;
+};
+template <class Law>
+struct PartnerOf<Law, std::void_t<decltype(Law::shares_with)>> {
+  static constexpr std::string_view name = Law::shares_with;
+};
+/// Whose parameter it is: its law, in an element. What the law's partner (`shares_with`) calls by the same name in the
+/// same element is one number, and the partner's.
+struct Holder {
+  std::string element;
+  std::string_view law, partner;
+  bool holds(const std::string& in_element, std::string_view of_law) const {
+    return in_element == element && (of_law == law || of_law == partner);
+  }
+};
+
+/// Calls f(holder, table entry, field) for each parameter; the system's own have neither element nor law.
 template <class System, class F>
 void for_each_parameter_of(System& system, F&& f) {
-  for_each_parameter<System>([&](const auto& p) { f(std::string(), std::string_view(), p, system.*p.field); });
+  for_each_parameter<System>([&](const auto& p) { f(Holder{}, p, system.*p.field); });
   for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;
-    for_each_parameter<Law>([&](const auto& p) { f(element, Law::name, p, law.*p.field); });
+    const Holder holder{element, Law::name, PartnerOf<Law>::name};
+    for_each_parameter<Law>([&](const auto& p) { f(holder, p, law.*p.field); });
   });
 }
 

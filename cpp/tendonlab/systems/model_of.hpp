@@ -19,12 +19,11 @@ std::string axis_of(const std::string& element) {
     if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
   return {};
 }
-/// Where the parameter stands that laws of `element` call `own`, if it is there: one that several of them name is the
-/// same number in all of them, and belongs to the first.
-inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const std::string& element,
+/// Where the parameter stands that `holder` calls `own`, if it is there already.
+inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const Holder& holder,
                                            std::string_view own) {
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].element == element && parameters[i].own == own) return i;
+    if (parameters[i].own == own && holder.holds(parameters[i].element, parameters[i].effect)) return i;
   return {};
 }
 }  // namespace systems
@@ -47,11 +46,11 @@ SystemInfo describe() {
   systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) {
     info.elements.push_back({element, systems::axis_of<System>(element)});
   });
-  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view law, const auto& p, auto&) {
-    if (!systems::place_of(info.parameters, element, p.name))
-      info.parameters.push_back({systems::parameter_name<System>(element, law, p.name), element, std::string(law),
-                                 std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper,
-                                 std::string(p.meaning)});
+  systems::for_each_parameter_of(system, [&](const systems::Holder& of, const auto& p, auto&) {
+    if (!systems::place_of(info.parameters, of, p.name))
+      info.parameters.push_back({systems::parameter_name<System>(of.element, of.law, p.name), of.element,
+                                 std::string(of.law), std::string(p.name), p.dimension, p.purpose, p.typical, p.lower,
+                                 p.upper, std::string(p.meaning)});
   });
   systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;
@@ -66,8 +65,9 @@ SystemInfo describe() {
                       {},
                       Law::roles,
                       systems::is_structural<System>(name)};
+    const systems::Holder holder{element, Law::name, systems::PartnerOf<Law>::name};
     for_each_parameter<Law>([&](const auto& p) {
-      const auto& owner = info.parameters[*systems::place_of(info.parameters, element, p.name)];
+      const auto& owner = info.parameters[*systems::place_of(info.parameters, holder, p.name)];
       if (owner.effect == Law::name)
         effect.parameters.push_back(owner.name);
       else
@@ -82,13 +82,14 @@ SystemInfo describe() {
 template <class System>
 std::vector<std::size_t> find_places() {
   System system{};
-  std::vector<std::pair<std::string, std::string_view>> known;
+  std::vector<std::pair<systems::Holder, std::string_view>> known;
   std::vector<std::size_t> places;
-  systems::for_each_parameter_of(system, [&](const std::string& element, std::string_view, const auto& p, auto&) {
-    const std::pair one{element, p.name};
-    const auto found = std::find(known.begin(), known.end(), one);
+  systems::for_each_parameter_of(system, [&](const systems::Holder& of, const auto& p, auto&) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& one) {
+      return one.second == p.name && of.holds(one.first.element, one.first.law);
+    });
     places.push_back(static_cast<std::size_t>(found - known.begin()));
-    if (found == known.end()) known.push_back(one);
+    if (found == known.end()) known.emplace_back(of, p.name);
   });
   return places;
 }
@@ -100,7 +101,7 @@ System assemble(const Configuration& with, const std::vector<integrate::Seed>& s
   static const auto places = find_places<System>();
   System system{};
   auto place = places.begin();
-  systems::for_each_parameter_of(system, [&](const std::string&, std::string_view, const auto&, auto& field) {
+  systems::for_each_parameter_of(system, [&](const systems::Holder&, const auto&, auto& field) {
     const std::size_t index = *place++;
     T value(with.values[index]);
     if constexpr (!std::is_same_v<T, double>)

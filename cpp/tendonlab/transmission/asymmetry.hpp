@@ -15,6 +15,7 @@ struct Asymmetry {
   static constexpr std::string_view name = "asymmetry", source = "S4 section V, identified coefficients",
                                     equation = "mu (1 + a sgn(v))",
                                     summary = "direction-dependent friction coefficient of a contact";
+  static constexpr std::string_view shares_with = "capstan";
   static constexpr unsigned roles = role::factor | role::refines, sees = sees_wrap;
   T friction_coefficient, difference;
 

@@ -13,6 +13,7 @@ struct Stribeck {
   static constexpr std::string_view name = "stribeck", source = "S4 eqs 27, 29",
                                     equation = "g (1 + p (mu_s/mu - 1) exp(-(v/v_s)^2)) sgn(v)",
                                     summary = "Stribeck friction: a larger friction coefficient at low speed";
+  static constexpr std::string_view shares_with = "capstan";
   static constexpr unsigned roles = role::factor | role::refines, sees = sees_velocity;
   T static_coefficient, share;
   Divisor<T> falloff, kinetic_coefficient;
