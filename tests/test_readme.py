@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import nbformat
 import numpy as np
 import pandas as pd
 import pytest
@@ -83,3 +84,16 @@ def test_the_ci_runs_the_line_of_the_readme() -> None:
 def test_links_and_figures_are_there() -> None:
     targets = re.findall(r"\]\(([^)#]+)\)", TEXT)
     assert [target for target in targets if "://" not in target and not (ROOT / target).exists()] == []
+
+
+def test_what_is_said_of_the_papers_can_be_found_in_their_notebooks() -> None:
+    """Every section that the table of figures names is a heading of that paper's notebook."""
+    headings = {
+        path.name[:2].upper(): re.findall(r"^#+ (.*)$", "\n".join(c.source for c in nbformat.read(path, 4).cells), re.M)
+        for path in (ROOT / "notebooks").glob("s?_*.ipynb")
+    }
+    rows = re.findall(r"^\| (S\d) \| ([^|]*) \| ([^|]*) \| [^|]+ \|$", TEXT, re.M)
+    assert {paper for paper, _, _ in rows} == set(headings)
+    for paper, what, where in rows:
+        for section in re.findall(r'"([^"]+)"', re.sub(r"`papers.tables`.*", "", where)):
+            assert any(section in heading for heading in headings[paper]), f"{paper} {what}: {section}"
