@@ -84,7 +84,8 @@ class Port:
 @dataclass(frozen=True)
 class SystemInfo:
     """Everything a system states about itself. `commanded`: input 0 is the command of an actuator; `sampled`: outputs
-    follow sample by sample, without a differential equation; `element_axes`: of elements with an axis of their own."""
+    follow sample by sample, without a differential equation; `steady`: and no sample depends on another, so that rows
+    need no time; `element_axes`: of elements with an axis of their own."""
 
     kind: str
     equation: str
@@ -99,6 +100,7 @@ class SystemInfo:
     default_nominal_effects: tuple[str, ...]
     commanded: bool
     sampled: bool
+    steady: bool
 
     def parameter(self, name: str) -> Parameter:
         """The row of that name; ParameterError, with the nearest name, where there is none."""
@@ -139,6 +141,7 @@ def system_info(kind: str) -> SystemInfo:
         default_nominal_effects=tuple(raw["nominal"]),
         commanded=raw["commanded"],
         sampled=raw["sampled"],
+        steady=raw["steady"],
     )
 
 

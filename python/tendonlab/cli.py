@@ -197,11 +197,14 @@ def _identify(given: Arguments) -> int:
 
 def _simulate(given: Arguments) -> int:
     from tendonlab.data import load
+    from tendonlab.sweep import refuse_conditions
     from tendonlab.terminal import errors_text
 
     rig = load(given.dataset)
     experiment = _experiment(rig, given.experiment)
-    run = _changed(rig.system(), given.effects, _settings(given.set)).simulate(experiment)
+    changes = _settings(given.set)
+    refuse_conditions(experiment, changes)
+    run = _changed(rig.system(), given.effects, changes).simulate(experiment)
     size = f"{len(experiment.data)} samples, {experiment.duration:g} s"
     print(f"{rig.name}, {experiment.name} ({experiment.split}): {size}\n")
     print(errors_text(run, experiment))

@@ -17,6 +17,7 @@ from tendonlab.replay import Prepared
 from tendonlab.system import System
 
 LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 1.5
+LARGEST = 700.0  # logarithm beyond which no double follows: the end of an interval that knows nothing
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class Free:
 
     def value(self, x: float) -> float:
         """The parameter at coordinate x."""
-        return self.scale * math.exp(x) if self.log else self.scale * x
+        return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale * x
 
     def coordinate(self, value: float) -> float:
         """x at a value of the parameter."""
@@ -70,7 +71,7 @@ class Free:
 
     def slope(self, x: float) -> float:
         """d value / d x."""
-        return self.scale * math.exp(x) if self.log else self.scale
+        return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale
 
     def started(self, value: float) -> Free:
         """The same, started elsewhere (inside its bounds)."""

@@ -152,7 +152,7 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
     signals = []
     for k, given in enumerate(system.info.inputs):
         if given.name in data.columns:
-            values = data[given.name].to_numpy(dtype=float)
+            values = _finite(experiment, given.name)
             held = experiment.holds.get(given.name, given.hold)
             between = hold if held else smoothed if given.between == "smooth" else linear
             signals.append(between(time, values))
@@ -163,6 +163,19 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
         else:
             signals.append(_core.Signal())
     return signals
+
+
+def _finite(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of an input, all of them numbers, at instants that increase."""
+    values, time = experiment.data[name].to_numpy(dtype=float), experiment.time
+    if len(time) > 1 and not np.all(np.diff(time) > 0):
+        k = int(np.argmin(np.diff(time) > 0)) + 1
+        raise DatasetError(f"{experiment.name}: time[{k}] = {time[k]} s after {time[k - 1]} s; expected it to increase")
+    broken = np.flatnonzero(~np.isfinite(values))
+    if broken.size:
+        k = int(broken[0])
+        raise DatasetError(f"{experiment.name}: {name} = {values[k]} at t = {time[k]:g} s; expected a finite number")
+    return values
 
 
 def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.ndarray) -> _core.Loop:

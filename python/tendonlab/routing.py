@@ -5,7 +5,7 @@ driven pulley of joint i. A tension is the net one of a loop, the difference bet
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
@@ -21,10 +21,34 @@ AtRest = Literal["drive", "mean", "lossless"]
 LARGEST_SYSTEM = 4  # joints of the system `tendon_routing`
 
 
+def _floats(name: str, values: ArrayLike, *, shape: tuple[int, ...] | None = None) -> np.ndarray:
+    """`values` as real numbers, of `shape` where that is given."""
+    try:
+        given = np.asarray(values)
+        array = given.astype(float, casting="unsafe" if given.dtype == object else "same_kind")
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{name} = {values!r}: expected real numbers") from error
+    if shape is not None and array.shape != shape:
+        raise ParameterError(f"{name} = {values!r}: expected shape {shape}")
+    return array
+
+
+def _together(**named: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The arrays in their common shape."""
+    try:
+        return tuple(np.broadcast_arrays(*named.values()))
+    except ValueError as error:
+        shapes = ", ".join(f"{name} of shape {array.shape}" for name, array in named.items())
+        raise ParameterError(f"{shapes}: expected shapes that broadcast") from error
+
+
 def back_driven_efficiency(efficiency: ArrayLike) -> np.ndarray:
     """Efficiency of a reducer that loses as much power driven back as driving, 1: 2 - 1/efficiency; 0 or less: it locks
-    itself. Source: S1 eq. 10."""
-    return 2.0 - 1.0 / np.asarray(efficiency, dtype=float)
+    itself. Raises ParameterError for an `efficiency` outside (0, 1]. Source: S1 eq. 10."""
+    driving = _floats("efficiency", efficiency)
+    if not np.all((driving > 0.0) & (driving <= 1.0)):
+        raise ParameterError(f"efficiency = {driving.tolist()}: expected values in (0, 1]")
+    return 2.0 - 1.0 / driving
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +63,8 @@ class Reducer:
     allow_self_locking: bool = False
 
     def __post_init__(self) -> None:
+        for name in ("efficiency", "ratio") + (() if self.driven_back is None else ("driven_back",)):
+            _floats(name, getattr(self, name), shape=())
         lowest = 0.0 if self.allow_self_locking else 0.5
         if not lowest < self.efficiency <= 1.0:
             hint = "" if self.allow_self_locking else "; at 0.5 and below it locks itself: allow_self_locking=True"
@@ -49,6 +75,8 @@ class Reducer:
             raise ParameterError(f"driven_back = {self.driven_back}: expected 1 where nothing is lost while driving")
         if not self.allow_self_locking and not 0.0 < self.back_driven <= 1.0:
             raise ParameterError(f"driven_back = {self.driven_back}: expected a value in (0, 1]")
+        if not -np.inf < self.back_driven <= 1.0:
+            raise ParameterError(f"driven_back = {self.driven_back}: expected a finite value of at most 1")
 
     @property
     def back_driven(self) -> float:
@@ -75,7 +103,7 @@ class Reducer:
         return self._alone(output_torque, velocity, to_motors=True)
 
     def _alone(self, torque: ArrayLike, velocity: ArrayLike, *, to_motors: bool) -> np.ndarray:
-        m, n = np.broadcast_arrays(np.asarray(torque, dtype=float), np.asarray(velocity, dtype=float))
+        m, n = _together(torque=_floats("torque", torque), velocity=_floats("velocity", velocity))
         one = TendonTransmission(radius=np.array([[self.ratio]]), motor_radius=np.ones(1), reducers=[self])
         run = one.statics.inverse if to_motors else one.statics.direct
         return run(m[..., None], n[..., None], model="ideal").torque[..., 0]
@@ -94,7 +122,7 @@ class BranchLosses:
 
     def __post_init__(self) -> None:
         for name in ("constant", "tension", "viscous"):
-            values = np.asarray(getattr(self, name), dtype=float)
+            values = _floats(f"{name} loss", getattr(self, name))
             if values.ndim != 2 or values.shape[0] != values.shape[1]:
                 raise ParameterError(f"{name} loss of shape {values.shape}: expected (n, n), a row a transmission")
             bound = 1.0 if name == "tension" else np.inf
@@ -102,6 +130,9 @@ class BranchLosses:
             if not np.all((used >= 0) & (used < bound)):
                 raise ParameterError(f"{name} loss = {values.tolist()}: expected values in [0, {bound})")
             object.__setattr__(self, name, np.tril(values))
+        shapes = {name: getattr(self, name).shape for name in ("constant", "tension", "viscous")}
+        if len(set(shapes.values())) > 1:
+            raise ParameterError(f"losses of shapes {shapes}: expected one shape (n, n)")
 
     @classmethod
     def none(cls, num_joints: int) -> BranchLosses:
@@ -218,7 +249,10 @@ class TendonTransmission:
         made: dict[str, Any] = {"radius": radius, "motor_radius": motor, "losses": losses}
         for name in ("reducers", "motor_reducers"):
             given = getattr(self, name)
-            made[name] = tuple(given) or (None,) * n
+            given = tuple(given) if isinstance(given, Iterable) else given
+            if not (isinstance(given, tuple) and all(r is None or isinstance(r, Reducer) for r in given)):
+                raise ParameterError(f"{name} = {given!r}: expected a Reducer or None for each joint")
+            made[name] = given or (None,) * n
             if len(made[name]) != n:
                 raise ParameterError(f"{name}: {len(made[name])} given, expected {n}, None where there is none")
         made |= {"kinematics": Kinematics(self), "statics": Statics(self)}
@@ -250,6 +284,18 @@ class TendonTransmission:
         n = self.num_joints
         if n > LARGEST_SYSTEM or any(self.motor_reducers):
             raise ParameterError(f"{n} joints, reducers at motors {self.motor_reducers}: expected at most 4 and none")
+        for k, fitted in enumerate(self.reducers):
+            if fitted is None:
+                continue
+            if not np.isclose(fitted.back_driven, back_driven_efficiency(fitted.efficiency), rtol=0.0, atol=1e-12):
+                raise ParameterError(
+                    f"reducers[{k}].driven_back = {fitted.driven_back}: expected None, S1 eq. 10, which is all that "
+                    "tendon_routing has"
+                )
+            if self.at_rest != "drive":
+                raise ParameterError(
+                    f"at_rest = {self.at_rest!r}: expected 'drive', which is all that tendon_routing has"
+                )
         values: dict[str, float] = {}
         for i in range(LARGEST_SYSTEM):
             own = i < n
@@ -271,7 +317,7 @@ class TendonTransmission:
         return np.asarray(found).reshape(*values.shape[:-1], *found.shape[1:])
 
     def _matching(self, name: str, values: ArrayLike) -> np.ndarray:
-        array = np.asarray(values, dtype=float)
+        array = _floats(name, values)
         if array.ndim < 1 or array.shape[-1] != self.num_joints:
             raise ParameterError(f"{name} of shape {array.shape}: expected (…, {self.num_joints}), a column a joint")
         if not np.all(np.isfinite(array)):
@@ -282,7 +328,9 @@ class TendonTransmission:
         self, torque: ArrayLike, velocity: ArrayLike, model: str, sign_velocity: float, *, to_motors: bool
     ) -> Propagation:
         torque, velocity = self._matching("torque", torque), self._matching("joint_velocity", velocity)
-        torque, velocity = np.broadcast_arrays(torque, velocity)
+        torque, velocity = _together(torque=torque, joint_velocity=velocity)
+        if not 0.0 <= _floats("sign_velocity", sign_velocity, shape=()) < np.inf:
+            raise ParameterError(f"sign_velocity = {sign_velocity}: expected a finite speed of at least 0, m/s")
         lead, n = torque.shape[:-1], self.num_joints
         found = self.core.statics(
             torque=torque.reshape(-1, n), joint_velocity=velocity.reshape(-1, n), model=model,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -40,12 +40,14 @@ def sweep(
     call gives the same bits, whatever runs it.
     `tolerance`: relative error of a step. `executor`: any concurrent.futures executor, which stays open; without one,
     a thread a processor (the core releases the interpreter).
-    Raises ParameterError, before anything is simulated, for an unknown parameter, a value outside its bounds or an axis
-    without values; DatasetError for a missing input; NumericalError where every point failed."""
+    Raises ParameterError, before anything is simulated, for an unknown parameter, one that the experiment's conditions
+    fix, a value outside its bounds or an axis without values; DatasetError for a missing input; NumericalError where
+    every point failed."""
     axes = {name: _axis(name, values) for name, values in grid.items()}
     points = [
         dict(zip(axes, values, strict=True)) for values in itertools.product(*(v.tolist() for v in axes.values()))
     ]
+    refuse_conditions(experiment, axes)
     systems = [system.with_parameters(point) for point in points]
     time = (experiment.data if isinstance(experiment, Experiment) else experiment).index.to_numpy(dtype=float)
     outputs = np.full((len(points), len(system.info.outputs), len(time)), np.nan)
@@ -63,6 +65,15 @@ def sweep(
     if "" not in messages:
         raise NumericalError(f"none of {len(points)} points could be simulated; the first: {messages[0]}")
     return _dataset(system, axes, time, outputs, messages)
+
+
+def refuse_conditions(experiment: Experiment | pd.DataFrame, names: Iterable[str]) -> None:
+    """Raise ParameterError where one of `names` is a parameter that the experiment's conditions fix."""
+    fixed = experiment.conditions if isinstance(experiment, Experiment) else {}
+    for name in names:
+        if name in fixed:
+            told = f"the conditions of the experiment fix it at {fixed[name]:g}"
+            raise ParameterError(f"{name}: {told}; expected another parameter, or the experiment's `data` alone")
 
 
 def _axis(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:

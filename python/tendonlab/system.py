@@ -115,11 +115,11 @@ class System:
     ) -> Trajectory:
         """Simulate what `experiment` applied, and give outputs at its instants.
 
-        `experiment`: an experiment of a dataset, or a frame indexed by time, s, with a column an input. `replay`:
-        "controller" (rig and known controller in free run), "free" (logged inputs only) or "auto" (the controller where
-        the simulator knows it and the reference was logged). `tolerance`: relative error of a step. `ports`: also what
-        each port sees and does.
-        Raises DatasetError for a missing input, NumericalError where the integration fails."""
+        `experiment`: an experiment of a dataset (its conditions fix parameters, its `add` adds to them), or a frame
+        indexed by time, s, with a column an input. `replay`: "controller" (rig and known controller in free run),
+        "free" (logged inputs only) or "auto" (the controller where the simulator knows it and the reference was
+        logged). `tolerance`: relative error of a step. `ports`: also what each port sees and does.
+        Raises DatasetError for a missing input or one that is no number, NumericalError where the integration fails."""
         from tendonlab.replay import simulate
 
         return simulate(self, experiment, tolerance=tolerance, ports=ports, replay=replay)

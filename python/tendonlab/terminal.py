@@ -182,7 +182,8 @@ def system_text(info: SystemInfo, *, axis: str) -> str:
         lines += [f"  {title}", *(_named(*row) for row in rows)]
     own = [info.parameter(name) for name in _nominal_parameters(info)]
     lines += ["  parameters", *(_named(row.name, parameter_unit(info, row, axis), row.meaning) for row in own)]
-    contains = f"contains {listing(info.default_nominal_effects)}, unless the dataset says otherwise"
+    nominal = listing(info.default_nominal_effects) or "no effect"
+    contains = f"contains {nominal}, unless the dataset says otherwise"
     return "\n".join([*lines, wrapped(contains, indent="  ", hanging=" " * 6)])
 
 

@@ -1,4 +1,4 @@
-"""The acceptance list B1 to B7 of S2, and what its procedures promise."""
+"""What the models, fits and procedures of S2 promise, on synthetic logs."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def gear_fit(seed: int) -> s2.Estimate:
 
 
 def test_gear_friction_is_found_and_its_intervals_cover() -> None:
-    """B1: alpha within 6 %, beta within 15 %, and 90 of 100 intervals (3 less or more) hold the truth."""
+    """Alpha within 6 %, beta within 15 %, and 90 of 100 intervals (3 less or more) hold the truth."""
     fits = [gear_fit(seed) for seed in range(100)]
     covered = {name: sum(fit.covers(GEAR)[name] for fit in fits) for name in GEAR}
     assert min(covered.values()) >= 87
@@ -42,7 +42,7 @@ def test_viscous_friction_is_taken_off_first() -> None:
 
 
 def test_the_cable_is_found_and_its_interval_covers() -> None:
-    """B2: K within 0.5 %, c within 5 %, NRMSE below 2 %; half widths of the order of Table II."""
+    """K within 0.5 %, c within 5 %, NRMSE below 2 %; half widths of the order of Table II."""
     covered = np.zeros(3)
     for seed in range(40):
         ramps = s2.cable_ramps(RIG, seed=seed)
@@ -71,7 +71,7 @@ def test_one_speed_cannot_tell_damping_from_the_offset() -> None:
 
 @pytest.mark.parametrize("cable", [1, 2])
 def test_the_bushings_are_found(cable: int) -> None:
-    """B3: all eight within 2.5 half widths, which are of the order of the sheet's."""
+    """All eight within 2.5 half widths, which are of the order of those printed in Table II."""
     truth = RIG.bushings[cable - 1]
     for seed in range(3):
         loop = s2.bushing_loop(RIG, cable=cable, seed=seed)
@@ -92,7 +92,7 @@ def test_coarse_force_sensors_average_out() -> None:
 
 
 def test_filtered_samples_repeat_one_another() -> None:
-    """Pitfall 7: behind a filter of 1 Hz the naive intervals are too narrow; samples at 2.5 Hz give honest ones."""
+    """Behind a filter of 1 Hz the naive intervals are too narrow; samples at 2.5 Hz give honest ones."""
     loop = s2.bushing_loop(RIG)
     smooth = {name: lowpass(loop[name], cutoff=1.0, sample_rate=100.0) for name in loop}
     away = np.abs(smooth["velocity"]) > 0.038  # 1 s around reversals is left out
@@ -107,7 +107,7 @@ def test_filtered_samples_repeat_one_another() -> None:
 
 
 def test_the_static_force_difference() -> None:
-    """B7."""
+    """F_r1 - F_r2 that holds the level joint at rest: 22.70 N."""
     assert s2.equations.holding_difference(RIG, 0.0) == pytest.approx(22.70, abs=0.005)
 
 
@@ -189,7 +189,7 @@ def test_what_is_wrong_is_named() -> None:
 
 
 def test_a_path_that_grows_with_the_angle_is_no_friction() -> None:
-    """G3: an elastic path error adds the same force in both senses of motion, and moves nothing."""
+    """An elastic path error adds the same force in both senses of motion, and moves nothing."""
     plan = s2.reference()
     plain, longer = (s2.simulate(RIG, plan, path_error=path) for path in (0.0, 3e-4))
     assert np.array_equal(plain["theta"], longer["theta"])

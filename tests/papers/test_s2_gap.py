@@ -32,7 +32,7 @@ def test_the_gap_shrinks_by_more_than_80_percent(diagnosis: tl.Diagnosis) -> Non
 
 
 def test_the_ripple_cuts_the_error_of_the_velocity() -> None:
-    """G1 without noise: more than 80 % of the error's standard deviation at cruise goes."""
+    """The ripple of the gear without noise: more than 80 % of the error's standard deviation at cruise goes."""
     plan = s2.reference(end=15.0)
     real = s2.simulate(RIG, plan, ripple=0.1)["theta_rate"]
     plain = s2.system(RIG)
@@ -65,7 +65,7 @@ def test_the_disturbance_goes_with_the_screw_and_not_with_time() -> None:
 
 
 def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path) -> None:
-    """G2: whatever keeps the joint from creeping back holds the sense. Friction of the joint does, and stiction of the
+    """Whatever keeps the joint from creeping back holds the sense. Friction of the joint does, and stiction of the
     guides: these logs cannot tell, and the diagnosis says so."""
     rig = s2.write_dataset(tmp_path, RIG, hold=True)
     library = ["stiction:hold", "joint:coulomb", "joint:viscous", "gear:ripple", "bushing_1:coulomb", "load:offset"]

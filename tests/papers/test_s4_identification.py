@@ -1,5 +1,5 @@
-"""Stiffness and friction coefficients from the twins' tensions: S4 section V and Table of twins, tolerances of the
-sheet."""
+"""Stiffness and friction coefficients from the twins' tensions: S4 section V and its reconstructed twins,
+within the tolerances of the check file."""
 
 import numpy as np
 import pandas as pd

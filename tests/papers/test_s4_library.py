@@ -94,7 +94,7 @@ def test_rigid_ends_are_the_limit_of_stiff_ones() -> None:
 
 
 def test_the_stribeck_peak_shows_in_a_slow_run() -> None:
-    """f_22 and the error at reversal with and without mu_s, for a period of 40 and of 400 s (S4 sheet)."""
+    """f_22 and the error at reversal with and without mu_s, for a period of 40 and of 400 s."""
     smooth = replace(s4.contact(), mu_s=s4.contact().mu_c)
     for period, peak, plain, error in ((40.0, 10.53, 10.13, 0.0665), (400.0, 11.75, 10.10, 0.0703)):
         drive, time = s4.printed_drive(period=period), np.linspace(0.0, 1.35 * period, 5401)

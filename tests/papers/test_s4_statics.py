@@ -170,6 +170,6 @@ def test_sections_in_series() -> None:
     agree({"k_series": s4.series_stiffness(g.k1, g.k2, g.k3)}, "series_stiffness")
 
 
-def test_a_cable_goes_slack_where_the_sheet_says() -> None:
+def test_the_error_at_which_a_cable_goes_slack() -> None:
     assert np.rad2deg(s4.design().slack_error) == pytest.approx(0.239, abs=5e-4)
     assert np.rad2deg(replace(s4.design(), k=5.023e4).slack_error) == pytest.approx(4.75, abs=5e-3)

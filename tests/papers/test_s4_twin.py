@@ -159,7 +159,7 @@ def test_the_other_rule_of_static_friction() -> None:
 
 
 def test_solvers_agree(nominal: s4.CcsrmModel) -> None:
-    """Within 2e-6 degrees (S4 sheet), through a reversal."""
+    """Two solvers agree within 2e-6 degrees through a reversal."""
     time = np.arange(1301) / 1000
     first = nominal.simulate(s4.printed_drive(), time, rtol=1e-9)
     second = nominal.simulate(s4.printed_drive(), time, rtol=1e-8, method="DOP853")

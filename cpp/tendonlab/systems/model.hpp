@@ -46,6 +46,7 @@ struct SystemInfo {
   std::vector<PortInfo> ports;
   std::vector<std::string> nominal;
   bool commanded, sampled;
+  bool steady;  ///< sampled, and no sample depends on another: its rows need no time
 };
 
 /// A system with numbers in it: one value a parameter, one flag an effect, in the order of `SystemInfo`.

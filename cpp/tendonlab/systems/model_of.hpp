@@ -35,6 +35,7 @@ SystemInfo describe() {
   SystemInfo info{};
   info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
   info.commanded = System::commanded, info.sampled = systems::sampled<System>;
+  if constexpr (systems::sampled<System>) info.steady = integrate::memories<System> == 0 && System::carried == 0;
   for (const auto& s : System::inputs)
     info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1,
                            systems::word(s.between), std::string(s.unless)});

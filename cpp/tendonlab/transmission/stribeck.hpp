@@ -30,7 +30,8 @@ struct Stribeck {
   }
   template <class S>
   S factor(const Sliding<S>& at) const {
-    return 1.0 + (share * (static_coefficient / kinetic_coefficient - 1.0)) * exp(-square(at.velocity / falloff));
+    const T ratio = plain(kinetic_coefficient.value) > 0.0 ? T(static_coefficient / kinetic_coefficient) : T(1.0);
+    return 1.0 + (share * (ratio - 1.0)) * exp(-square(at.velocity / falloff));
   }
 };
 }  // namespace tendonlab::transmission

@@ -12,6 +12,7 @@ from tendonlab.bondgraph.elements import Bond, Element, Junction
 from tendonlab.bondgraph.graph import BondGraph
 from tendonlab.errors import ParameterError
 from tendonlab.plot.style import COLOURS, INK, MUTED
+from tendonlab.procedures.check import samples
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,14 +29,16 @@ def draw(
     `at`: place of each element, in any unit of length, one unit being about the room of a bond; distances in the graph
     decide where it is not given. `strokes`: show causality, the bar at the end that receives the effort; the bars of
     inertias whose flow is forced on them (derivative causality) are coloured.
-    Raises ParameterError for an element without a place."""
+    Raises ParameterError for a graph without elements, an element without a place, a place that is not two numbers."""
     import matplotlib.pyplot as plt
 
-    ax = plt.gca() if ax is None else ax
-    places = _spread(graph) if at is None else {name: np.array(place, dtype=float) for name, place in at.items()}
+    if not graph.elements:
+        raise ParameterError("graph.elements = (): expected one element or more")
+    places = _spread(graph) if at is None else {name: _place(name, place) for name, place in at.items()}
     for element in graph.elements:
         if element.name not in places:
             raise ParameterError(f"at: no place for {element.name!r}; expected one for every element")
+    ax = plt.gca() if ax is None else ax
     inches = _scale(ax, np.array([places[e.name] for e in graph.elements]))
     found = causality(graph) if strokes else None
     for bond in graph.bonds:
@@ -44,6 +47,13 @@ def draw(
         away = [places[b.other(element.name)] - places[element.name] for b in graph.at[element.name]]
         _write(ax, element, places[element.name], _widest_gap(away), inches)
     return ax
+
+
+def _place(name: str, place: Place) -> np.ndarray:
+    row = samples(f"at[{name!r}]", place)
+    if len(row) != 2:
+        raise ParameterError(f"at[{name!r}] = {place}: expected two numbers, x and y")
+    return row
 
 
 def _scale(ax: Axes, xy: np.ndarray) -> float:

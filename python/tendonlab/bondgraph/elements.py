@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from tendonlab.errors import ParameterError
+from tendonlab.procedures.check import within
 
 Law = Callable[[Any], Any]
 
@@ -33,6 +34,9 @@ class Source(Element):
     """Imposes `value` on its bond, or, where `value` is None, the input of that name."""
 
     value: float | None = None
+
+    def __post_init__(self) -> None:
+        _require_finite(self, "value", self.value)
 
 
 class Se(Source):
@@ -65,6 +69,9 @@ class C(Element):
     effort: float | Law
     kind = "C"
 
+    def __post_init__(self) -> None:
+        _require_finite(self, "effort", self.effort)
+
     def of(self, displacement: Any) -> Any:
         """Effort at a displacement."""
         return self.effort(displacement) if callable(self.effort) else self.effort * displacement
@@ -79,6 +86,9 @@ class R(Element):
     flow: Callable[..., Any] | None = None
     of: str = ""
     kind = "R"
+
+    def __post_init__(self) -> None:
+        _require_finite(self, "effort", self.effort)
 
     def effort_of(self, flow: Any, *position: Any) -> Any:
         """Effort at a flow."""
@@ -100,6 +110,9 @@ class TF(Element):
     ratio: float
     kind = "TF"
     num_bonds = 2
+
+    def __post_init__(self) -> None:
+        _require_ratio(self, self.ratio)
 
     def at(self, position: Any) -> Any:
         """The ratio, at whatever position."""
@@ -128,6 +141,9 @@ class GY(Element):
     ratio: float
     kind = "GY"
     num_bonds = 2
+
+    def __post_init__(self) -> None:
+        _require_ratio(self, self.ratio)
 
 
 class Junction(Element):
@@ -171,3 +187,14 @@ class Bond:
 def _require_positive(name: str, value: float) -> None:
     if not (math.isfinite(value) and value > 0):
         raise ParameterError(f"{name} = {value}: expected a positive inertia")
+
+
+def _require_finite(element: Element, name: str, value: float | Callable[..., Any] | None) -> None:
+    """A number must be finite; a law, or an input that comes later, is not looked at."""
+    if value is not None and not callable(value):
+        within(f"{element.kind} {element.name}: {name}", value, -math.inf, math.inf)
+
+
+def _require_ratio(element: Element, ratio: float) -> None:
+    if within(f"{element.kind} {element.name}: ratio", ratio, -math.inf, math.inf) == 0:
+        raise ParameterError(f"{element.kind} {element.name}: ratio = {ratio}: expected a number other than 0")

@@ -13,6 +13,7 @@ from tendonlab.bondgraph.causality import Causality, causality
 from tendonlab.bondgraph.elements import GY, MTF, TF, Bond, C, Element, I, Junction, One, R, Source, Zero
 from tendonlab.bondgraph.graph import BondGraph
 from tendonlab.errors import ParameterError
+from tendonlab.procedures.check import choice, within
 
 _STEP = 1e-30  # of complex differentiation: nothing is subtracted, so it may be as small as we like
 
@@ -34,8 +35,9 @@ class Equations:
     def rates(self, state: Mapping[str, float], inputs: Mapping[str, float] | None = None) -> dict[str, float]:
         """Rate of every state. `state`, `inputs`: a value a name, SI.
 
-        Raises ParameterError for a missing name, and for resistors that only a loop of equations would decide."""
-        given = _At(self, dict(state), dict(inputs or {}))
+        Raises ParameterError for a missing or unknown name, a value that is not finite, and for resistors that only a
+        loop of equations would decide."""
+        given = self._given(state, inputs or {})
         if self.causality.dependent:
             given.reactions = self._reactions(given)
         return {name: float(np.real(given.rate(name))) for name in self.states}
@@ -44,10 +46,17 @@ class Equations:
         self, state: Mapping[str, float], inputs: Mapping[str, float] | None = None
     ) -> dict[Bond, tuple[float, float]]:
         """Effort and flow of every bond, where power = effort * flow counts from tail to head."""
-        given = _At(self, dict(state), dict(inputs or {}))
+        given = self._given(state, inputs or {})
         if self.causality.dependent:
             given.reactions = self._reactions(given)
         return {b: (float(np.real(given.effort(b))), float(np.real(given.flow(b)))) for b in self.graph.bonds}
+
+    def _given(self, state: Mapping[str, float], inputs: Mapping[str, float]) -> _At:
+        for what, values, known in (("state", state, self.states), ("input", inputs, self.inputs)):
+            for name, value in values.items():
+                choice(what, name, known)
+                within(f"{what} {name!r}", value, -np.inf, np.inf)
+        return _At(self, dict(state), dict(inputs))
 
     def _reactions(self, given: _At) -> dict[str, float]:
         """Efforts of inertias that must follow others: (M + T' M_d T) f' = e - T' M_d T'_t f, solved for M_d (T f)'.

@@ -17,7 +17,8 @@ class BondGraph:
     """Elements joined by bonds. `positions`: name of a position -> the 1-junction whose flow is its rate; modulated
     transformers look at them.
 
-    Raises ParameterError for names that are used twice or unknown, and for elements with a wrong number of bonds."""
+    Raises ParameterError for names that are used twice (by a position and an element, too) or unknown, and for elements
+    with a wrong number of bonds."""
 
     elements: Sequence[Element]
     bonds: Sequence[Bond]
@@ -36,6 +37,8 @@ class BondGraph:
         for element in self.elements:
             self._require_bonds(element)
         for name, junction in self.positions.items():
+            if name in self.by_name:
+                raise ParameterError(f"position {name!r}: an element has that name; expected a name of its own")
             if not isinstance(self.by_name.get(junction), One):
                 raise ParameterError(f"position {name!r}: {junction!r} is no 1-junction; expected the name of one")
 

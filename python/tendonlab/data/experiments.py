@@ -142,7 +142,7 @@ def _read_frame(file: str, context: Context) -> pd.DataFrame:
         columns = read_columns(context.folder / file, list(dict.fromkeys([context.time_column, *signals])))
         time = _read_time_samples(columns, context)
     except MissingColumnError as error:
-        if error.column != context.time_column or context.time_stated or not context.info.sampled:
+        if error.column != context.time_column or context.time_stated or not context.info.steady:
             raise
         columns = read_columns(context.folder / file, signals)  # steady points: a row has a number, no instant
         time = np.arange(len(columns.values[signals[0]]), dtype=float)

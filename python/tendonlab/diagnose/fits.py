@@ -107,13 +107,14 @@ class Fitted:
             return usual
         pieces = self.share * np.array([b.jacobian.T @ b.residual for b in self.blocks])
         between = pieces.T @ pieces * len(pieces) / (len(pieces) - 1) + np.diag(self._prior)
-        grow = np.sqrt(np.maximum(1.0, np.diag(plain @ between @ plain) / np.diag(usual)))
+        ratio = np.diag(plain @ between @ plain) / np.maximum(np.diag(usual), 1e-300)
+        grow = np.sqrt(np.maximum(1.0, ratio))
         return np.asarray(grow[:, None] * usual * grow)
 
     def value(self, name: str) -> tuple[float, tuple[float, float]]:
         """Fitted value of a free parameter and its 95 % interval."""
         k = [f.name for f in self.free].index(name)
-        f, x, sd = self.free[k], float(self.x[k]), float(np.sqrt(self.covariance[k, k]))
+        f, x, sd = self.free[k], float(self.x[k]), float(np.sqrt(max(self.covariance[k, k], 0.0)))
         low, high = sorted((f.value(x - 1.96 * sd), f.value(x + 1.96 * sd)))
         return f.value(x), (max(low, f.lower), min(high, f.upper))
 

@@ -74,12 +74,16 @@ class Descent:
     def __init__(self, residual: Callable[[np.ndarray], ArrayLike], box: Box) -> None:
         self._residual = residual
         self._box = box
+        self._num: int | None = None  # of residuals
         self._broke = False  # whether the residual was ever not finite
 
     def __call__(self, unit: np.ndarray) -> np.ndarray:
         row = np.asarray(self._residual(self._box.values(unit)), dtype=float)
         if row.ndim != 1 or not row.size:
             raise ParameterError(f"residual gives shape {row.shape}: expected one row of numbers")
+        self._num = len(row) if self._num is None else self._num
+        if len(row) != self._num:
+            raise ParameterError(f"residual gives {len(row)} numbers: expected {self._num}, as many as before")
         self._broke |= not bool(np.isfinite(row).all())
         return row
 
@@ -98,6 +102,8 @@ class Descent:
         limits = {"ftol": tolerance, "xtol": tolerance, "gtol": tolerance, "max_nfev": 200 * len(start)}
         try:
             return least_squares(self, inside, bounds=(0.0, 1.0), **limits)
+        except ParameterError:
+            raise
         except (ValueError, np.linalg.LinAlgError):
             if not self._broke:  # then it is the caller's own
                 raise
@@ -151,9 +157,14 @@ def evolution(descent: Descent, points: np.ndarray, generator: np.random.Generat
             return False
 
         bounds = [(0.0, 1.0)] * points.shape[1]
-        found = differential_evolution(
-            descent.cost, bounds, init=points, seed=generator, tol=1e-6, polish=False, callback=count
-        )
+        try:
+            found = differential_evolution(
+                descent.cost, bounds, init=points, seed=generator, tol=1e-6, polish=False, callback=count
+            )
+        except RuntimeError as error:  # what scipy makes of any ValueError
+            if isinstance(error.__cause__, ParameterError):
+                raise error.__cause__ from None
+            raise
     if not math.isfinite(found.fun):
         raise NumericalError(f"residual is not finite for any of {len(points)} members; the bounds may be too wide")
     return Found(found.x, bool(found.success), str(found.message), np.asarray(found.population_energies))

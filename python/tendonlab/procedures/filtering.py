@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt
 
+from tendonlab.errors import ParameterError
 from tendonlab.procedures.check import positive, samples, whole, within
 
 
@@ -22,11 +23,21 @@ def lowpass(
     and a delay. Filter all signals that are compared alike. S2 filters at 1 Hz; order and phase are reconstructed.
 
     Raises ParameterError: `cutoff` not between 0 and half the sampling rate, order below 1, fewer than 3 (order + 1)
-    samples, numbers that are not finite."""
+    samples, numbers that are not finite, `cutoff` too low for the filter to be computed."""
     whole("order", order, 1)
     row = samples("values", values, fewest=3 * (order + 1))
     positive("sample_rate", sample_rate, "Hz")
     within("cutoff", cutoff, 0.0, 0.5 * sample_rate, "Hz", open_lower=True, open_upper=True)
+    try:
+        with np.errstate(divide="raise", invalid="raise"):
+            return _filtered(row, cutoff, sample_rate, order, zero_phase)
+    except (np.linalg.LinAlgError, ArithmeticError, ValueError) as error:
+        raise ParameterError(
+            f"cutoff = {cutoff}: expected a greater share of sample_rate = {sample_rate} Hz; rounding leaves no filter"
+        ) from error
+
+
+def _filtered(row: np.ndarray, cutoff: float, sample_rate: float, order: int, zero_phase: bool) -> np.ndarray:
     sections = butter(order, cutoff, fs=sample_rate, output="sos")
     if not zero_phase:
         return np.asarray(sosfilt(sections, row, zi=sosfilt_zi(sections) * row[0])[0], dtype=float)

@@ -79,7 +79,10 @@ def reactive_torque(
 
     Raises ParameterError: unequal lengths, numbers that are not finite, a lever not above 0, creep without time."""
     positive("lever", lever, "m")
-    first, second = (calibration, calibration) if isinstance(calibration, LoadCell) else calibration
+    cells = (calibration, calibration) if isinstance(calibration, LoadCell) else calibration
+    if not (isinstance(cells, tuple | list) and len(cells) == 2 and all(isinstance(c, LoadCell) for c in cells)):
+        raise ParameterError(f"calibration = {calibration!r}: expected a LoadCell or a pair of them")
+    first, second = cells
     readings = samples("force_1", force_1), samples("force_2", force_2)
     if len(readings[0]) != len(readings[1]):
         raise ParameterError(f"force_2 has {len(readings[1])} samples: expected {len(readings[0])}, as many as force_1")

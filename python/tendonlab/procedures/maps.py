@@ -41,6 +41,8 @@ def map_point(time: ArrayLike, position: ArrayLike, torque: ArrayLike, *, segmen
     t = times(time)
     y, load = along(t, "position", position), along(t, "torque", torque)
     kept = steady_segment(t, y) if segment is None else segment
+    if not isinstance(kept, slice):
+        raise ParameterError(f"segment = {segment!r}: expected a slice of the samples or None")
     if len(t[kept]) < 2:
         raise ParameterError(f"segment = {segment}: expected at least 2 of the {len(t)} samples")
     since = t[kept] - t[kept].mean()
@@ -61,10 +63,17 @@ def friction_map(
     Raises ParameterError: no runs, numbers that are not finite, `tolerance` not in [0, 1)."""
     within("tolerance", tolerance, 0.0, 1.0, open_upper=True)
     named = runs if isinstance(runs, Mapping) else {"": runs}
-    rows = [row for name, points in named.items() for row in _rows(str(name), list(points), tolerance)]
+    rows = [row for name, points in named.items() for row in _rows(str(name), _points(points), tolerance)]
     if not rows:
         raise ParameterError("runs is empty: expected at least one MapPoint")
     return pd.DataFrame(rows, columns=["configuration", "speed", "torque", "sd", "sd_of_mean", "num_runs"])
+
+
+def _points(runs: Iterable[MapPoint]) -> list[MapPoint]:
+    points = list(runs) if isinstance(runs, Iterable) else [runs]
+    if not isinstance(runs, Iterable) or not all(isinstance(point, MapPoint) for point in points):
+        raise ParameterError(f"runs = {runs!r}: expected MapPoints, or MapPoints by configuration")
+    return points
 
 
 def _rows(name: str, points: list[MapPoint], tolerance: float) -> list[tuple[str, float, float, float, float, int]]:

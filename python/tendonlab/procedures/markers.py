@@ -13,6 +13,7 @@ from scipy.interpolate import CubicSpline, splev, splprep
 
 from tendonlab.catalog import nearest
 from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.procedures.check import samples, whole
 from tendonlab.procedures.sheath_shape import Shape
 
 NUM_SAMPLES = 500  # of the paper
@@ -25,9 +26,12 @@ def sort_markers(points: np.ndarray, *, proximal: np.ndarray | None = None) -> n
     """Markers, m, shape (n, 2) or (n, 3), in their order along the sheath: first the one nearest to `proximal` (the
     drive's end; the first row unless given), then always the nearest of those left.
 
-    Raises DatasetError for fewer than four markers, or two at one place."""
+    Raises DatasetError for fewer than four markers, or two at one place; ParameterError for a `proximal` that
+    is no such place."""
     points = _checked(points)
-    start = points[0] if proximal is None else np.asarray(proximal, dtype=float)
+    start = points[0] if proximal is None else samples("proximal", proximal)
+    if start.shape != points[0].shape:
+        raise ParameterError(f"proximal = {start.tolist()}: expected {len(points[0])} coordinates as of a marker, m")
     left = list(range(len(points)))
     order = [left.pop(int(np.argmin(np.linalg.norm(points - start, axis=1))))]
     while left:
@@ -58,8 +62,7 @@ class MarkerSpline:
                 raise ParameterError(f"{name} = {value!r}: {nearest(value, known)}")
         if not 0.0 <= self.smoothing < np.inf:
             raise ParameterError(f"smoothing = {self.smoothing}: expected a marker sd >= 0, m")
-        if self.num_samples < 3:
-            raise ParameterError(f"num_samples = {self.num_samples}: expected at least 3")
+        whole("num_samples", self.num_samples, 3)
 
     def knots(self) -> np.ndarray:
         """Parameter of each marker, (n,)."""
@@ -133,6 +136,7 @@ def wrap_angle_uncertainty(
     The noise of the markers themselves is in `value` already, so `bias` says what as much noise again would do."""
     if not 0.0 < marker_sd < np.inf:
         raise ParameterError(f"marker_sd = {marker_sd}: expected a positive sd, m")
+    whole("num_resamples", num_resamples, 2)
     rng = np.random.default_rng(seed)
     value = spline.wrap_angle(rule=rule)
     options: dict[str, Any] = {

@@ -76,7 +76,8 @@ def global_search(
     best divided by their noise's sd. Same `seed`, same result. Ctrl-C keeps the best start so far.
 
     Raises ParameterError: bounds that are not finite or not in order, unequal shapes, `starts` below 1 (5 for
-    "evolution"), a residual that is no row of numbers; NumericalError: no start has a finite residual. Source: S0
+    "evolution"), a residual that is no row of numbers, or
+    one of changing length; NumericalError: no start has a finite residual. Source: S0
     section 5 (at least 60 starts, or differential evolution; the rank of the Hessian)."""
     choice("method", method, METHODS)
     whole("starts", starts, 5 if method == "evolution" else 1)

@@ -24,6 +24,8 @@ class Shape:
         object.__setattr__(self, "turning", phi)
         if s.shape != phi.shape or s.ndim != 1 or len(s) < 2 or s[0] != 0.0 or phi[0] != 0.0:
             raise ParameterError(f"arc_length {s.shape}, turning {phi.shape}: expected equal lengths >= 2, both from 0")
+        if not (np.isfinite(s).all() and np.isfinite(phi).all()):
+            raise ParameterError(f"arc_length to {s[-1]}, turning to {phi[-1]}: expected finite numbers")
         if not (np.all(np.diff(s) > 0) and np.all(np.diff(phi) >= 0)):
             raise ParameterError("arc_length must increase and turning must not decrease along the sheath")
 

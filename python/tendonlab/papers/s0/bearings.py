@@ -11,6 +11,7 @@ import numpy as np
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bench import CENTRES, Configuration, Shaft
+from tendonlab.procedures.check import positive
 
 SCOPES = ("pulley", "transmission")
 AXES = ("z", "y")
@@ -52,6 +53,7 @@ def cable_pull(
     r_1, r_2 = of.radii(cable_diameter=cable_diameter)
     if not (np.isfinite(pretension) and pretension >= 0):
         raise ParameterError(f"pretension = {pretension}: expected a value in [0, inf] N")
+    positive("centres", centres, "m")
     sine = (r_1 + r_2 if of.crossed else r_2 - r_1) / centres
     if not 0 <= sine < 1:
         raise ParameterError(f"centres = {centres}: expected more than {r_1 + r_2} m, the sum of the radii")

@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bench import CENTRES, Configuration
+from tendonlab.procedures.check import positive, samples
 
 if TYPE_CHECKING:
     from tendonlab._core import Law
@@ -34,14 +35,23 @@ def motor_torque(
     T_M = [(J_M + J_1) + (J_2 + J_L)/N²] acceleration + (B_M + B_L/N²) speed + T_L/N + T_fs
 
     `speed` rad/s and `acceleration` rad/s² of the motor; `inertias` J_M, J_1 (capstan), J_2 (pulley), J_L, kg·m²;
-    `viscous` B_M, B_L, N·m·s/rad; `load_torque` T_L at the pulley and `friction` T_fs at the motor, N·m."""
+    `viscous` B_M, B_L, N·m·s/rad; `load_torque` T_L at the pulley and `friction` T_fs at the motor, N·m.
+    Raises ParameterError for a value that is not finite, or a ratio that is not positive."""
+    positive("ratio", ratio)
+    for name, values in (("inertias", inertias), ("viscous", viscous), ("load_torque", load_torque)):
+        samples(name, np.ravel(values))
+    for name, along in (("speed", speed), ("acceleration", acceleration), ("friction", friction)):
+        samples(name, np.ravel(along), fewest=0)
     motor, capstan, pulley, load = inertias
     inertia = motor + capstan + (pulley + load) / ratio**2
     return inertia * acceleration + (viscous[0] + viscous[1] / ratio**2) * speed + load_torque / ratio + friction
 
 
 def viscous_factor(ratio: float) -> float:
-    """(N² + 1)/N², 1: by how much the second shaft raises viscous friction where both have the same (S0 eq. 8)."""
+    """(N² + 1)/N², 1: by how much the second shaft raises viscous friction where both have the same (S0 eq. 8).
+
+    Raises ParameterError for a ratio that is not positive."""
+    positive("ratio", ratio)
     return (ratio**2 + 1) / ratio**2
 
 

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from tendonlab.papers.s0.bearings import pulley_reactions, relative_load
 from tendonlab.papers.s0.bench import TRANSMISSIONS, configuration, loaded
 from tendonlab.papers.s0.maps import LOADED, printed_peaks
+from tendonlab.procedures.check import choice
 
 BORE_RADIUS = 0.0125  # m, of the bearing 61905
 CATALOGUE_COEFFICIENT = 0.0015  # 1, friction of a deep groove ball bearing at its bore
@@ -29,7 +30,9 @@ def largest_preload(transmission: str) -> float:
     """Preload of each cable side, N, above which eq. 11 could not give the paper's own proposed torques.
 
     No part of eq. 11 grows faster with load than 1 + L_r, so (1 + L_r) must rise from D to D4M at least as the printed
-    torques do; preload, which L_r counts as well, flattens that rise."""
+    torques do; preload, which L_r counts as well, flattens that rise. Raises ParameterError for a transmission that
+    Table 8 has not."""
+    choice("transmission", transmission, TRANSMISSIONS)
     torque = printed_peaks()["proposed"]
     light, heavy = loaded(transmission, "D"), loaded(transmission, "D4M")
     needed = float(torque[heavy.name] / torque[light.name])
@@ -43,7 +46,10 @@ def largest_preload(transmission: str) -> float:
 
 def bearing_coefficient(transmission: str) -> float:
     """Friction coefficient at the bore, 1, that the bearings of the pulley would need to make the measured peaks rise
-    with load as they do. A catalogue has 0.0015: pure bearing friction does not explain the load effect."""
+    with load as they do. A catalogue has 0.0015: pure bearing friction does not explain the load effect.
+
+    Raises ParameterError for a transmission that Table 8 has not."""
+    choice("transmission", transmission, TRANSMISSIONS)
     rows = peaks_and_loads()
     own = rows[rows.index.str.startswith(transmission)]
     slope = float(np.polyfit(own["carried"], own["peak"], 1)[0])  # N·m at the input per N

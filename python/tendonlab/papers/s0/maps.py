@@ -7,10 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
+from tendonlab.errors import ParameterError
 from tendonlab.papers.s0 import twin
 from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, TRANSMISSIONS, Configuration, loaded
 from tendonlab.papers.tables import table
+from tendonlab.procedures.check import samples
 
 LOADED = LOADS[1:]
 FINE = np.arange(1.0, 105.01, 0.25)  # rad/s, on which peaks and valleys are sought
@@ -20,14 +22,21 @@ def twin_map(
     of: Configuration, *, num_runs: int = NUM_RUNS, both_signs: bool = True, seed: int | np.random.Generator = 0
 ) -> pd.DataFrame:
     """The twin's friction map of a configuration: `speed` rad/s, `torque` N·m (mean of `num_runs` runs), `sd` N·m of
-    one run, `num_runs`; a row a point, in order of speed."""
+    one run, `num_runs`; a row a point, in order of speed.
+
+    Raises ParameterError for less than one run."""
     speed = np.concatenate([-twin.SPEEDS[::-1], twin.SPEEDS]) if both_signs else twin.SPEEDS
     torque, sd = twin.measured(of, speed, num_runs=num_runs, seed=seed)
     return pd.DataFrame({"speed": speed, "torque": torque, "sd": sd, "num_runs": num_runs})
 
 
 def features(speed: np.ndarray, torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Speeds of the inner local maxima and minima of a sampled curve, rad/s."""
+    """Speeds of the inner local maxima and minima of a sampled curve, rad/s.
+
+    Raises ParameterError for samples that are missing or not finite."""
+    count = len(samples("speed", speed))
+    if len(samples("torque", torque)) != count:
+        raise ParameterError(f"torque has {len(torque)} samples: expected {count}, as many as speed")
     rise = np.diff(torque)
     peaks = (rise[:-1] > 0) & (rise[1:] <= 0)
     valleys = (rise[:-1] < 0) & (rise[1:] >= 0)

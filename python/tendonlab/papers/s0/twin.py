@@ -13,6 +13,7 @@ from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import Configuration, loaded
 from tendonlab.papers.tables import table
+from tendonlab.procedures.check import whole
 
 SPEEDS = np.concatenate([[1.0], np.arange(5.0, 106.0, 5.0)])  # rad/s, of the input; reconstructed grid
 PARALLEL_BUMP = 0.93  # peak of the parallel threading over the crossed one; reconstructed
@@ -82,7 +83,10 @@ def noise_sd(torque: np.ndarray | float) -> np.ndarray:
 def measured(
     of: Configuration, speed: np.ndarray, *, num_runs: int, seed: int | np.random.Generator = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mean torque over `num_runs` runs at each speed, N·m, and the sd of one run, shape of `speed`."""
+    """Mean torque over `num_runs` runs at each speed, N·m, and the sd of one run, shape of `speed`.
+
+    Raises ParameterError for less than one run."""
+    whole("num_runs", num_runs, 1)
     rng = np.random.default_rng(seed)
     true = friction(of, speed)
     runs = true + noise_sd(true) * rng.normal(size=(num_runs, *np.shape(speed)))

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
+from tendonlab.procedures.check import whole
 from tendonlab.routing import BranchLosses, Reducer, TendonTransmission
 
 NUM_JOINTS = 4
@@ -34,7 +36,8 @@ def example_device(*, reducers: bool = True) -> TendonTransmission:
 
 def first_joints(device: TendonTransmission, num_joints: int) -> TendonTransmission:
     """The first `num_joints` transmissions alone, as the paper's figures of three joints show them."""
-    n = num_joints
+    if (n := whole("num_joints", num_joints, 1)) > device.num_joints:
+        raise ParameterError(f"num_joints = {n}: expected 1 to {device.num_joints}, as many as the device has")
     kept = {name: getattr(device.losses, name)[:n, :n] for name in ("constant", "tension", "viscous")}
     return replace(
         device,

@@ -16,9 +16,11 @@ from tendonlab.papers.s1.identification import (
     fit_motor_friction,
     identify_joint,
     plan_identification,
+    require_joint,
     residual_error,
     true_motor_friction,
 )
+from tendonlab.procedures.check import whole
 from tendonlab.routing import Model, TendonTransmission
 
 SPEEDS = (-6.0, -4.0, -2.0, 2.0, 4.0, 6.0)  # rad/s of the motor under test [reconstructed]
@@ -98,6 +100,8 @@ def reducer_loop(*, joint: int = 1, samples: int = 400) -> pd.DataFrame:
     """Motor torque, N·m, over joint torque, N·m, of a joint alone that turns to and fro against a weight, with its
     reducer and nothing else lost: driving and driven back part the way up from the way down. Source: S1 eq. 9."""
     device = example_device()
+    require_joint(device, joint)
+    whole("samples", samples, 1)
     lossless = replace(device, losses=device.losses.scaled(constant=0.0, tension=0.0, viscous=0.0))
     phase = np.linspace(0.0, 2 * np.pi, samples)
     torque, velocity = np.zeros((samples, device.num_joints)), np.zeros((samples, device.num_joints))

@@ -10,6 +10,7 @@ import pandas as pd
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s1.device import gravity
+from tendonlab.procedures.check import positive
 from tendonlab.routing import Model, Propagation, TendonTransmission
 
 AMPLITUDE = np.array([0.5, 0.35, 0.4, 0.5])  # rad [reconstructed]
@@ -28,6 +29,7 @@ class Trajectory:
 
 def free_motion(*, duration: float = 12.0, sample_time: float = 0.002) -> Trajectory:
     """Sinusoids in all four joints [reconstructed]; S1 shows a free motion without saying which."""
+    positive("duration", duration, "s"), positive("sample_time", sample_time, "s")
     time = sample_time * np.arange(round(duration / sample_time))
     phase = 2 * np.pi * FREQUENCY * time[:, None]
     velocity = AMPLITUDE * 2 * np.pi * FREQUENCY * np.cos(phase)

@@ -12,6 +12,7 @@ import pandas as pd
 
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.procedures import steady_averages
+from tendonlab.procedures.check import samples, within
 from tendonlab.routing import BranchLosses, Model, TendonTransmission
 
 Strategy = Literal["S1", "S2"]
@@ -40,7 +41,7 @@ def plan_identification(
 
     "S1": the other motors stand, so joints behind turn along; "S2": the other joints stand, so their motors follow.
     Raises ParameterError unless each speed comes in both directions, over the same joint range. Source: S1 eq. 14."""
-    _require_joint(transmission, joint)
+    require_joint(transmission, joint)
     values = np.asarray(speeds, dtype=float)
     if values.size == 0 or not np.allclose(np.sort(values), np.sort(-values)) or np.any(values == 0):
         raise ParameterError(f"speeds = {values.tolist()}: expected each of them in both directions, none of them 0")
@@ -101,7 +102,7 @@ def fit_motor_friction(speed: Sequence[float] | np.ndarray, torque: Sequence[flo
 
 def true_motor_friction(transmission: TendonTransmission, joint: int) -> tuple[float, float]:
     """C_m0, N·m, and ν, N·m·s/rad, of a transmission that moves alone. Source: S1 eqs 18, 19."""
-    _require_joint(transmission, joint)
+    require_joint(transmission, joint)
     i, r = joint - 1, abs(transmission.motor_radius[joint - 1])
     losses = transmission.losses
     return float(r * losses.constant[i].sum()), float(r**2 * losses.viscous[i].sum())
@@ -188,11 +189,12 @@ def decompose(
     `branch_per_motor` k, m: velocity of each branch per motor velocity (S1 eq. 16), the motor radius in both
     strategies. The shares come from the design, e.g. from the number of bearings (`shares_by_bearings`), and add up to
     1: only they are a guess, the sums at the motor hold exactly. Raises ParameterError. Source: S1 eqs 17-21."""
-    k = np.abs(np.asarray(branch_per_motor, dtype=float))
-    if k.ndim != 1 or np.any(k == 0):
+    within("constant", constant, -np.inf, np.inf, "N·m"), within("viscous", viscous, -np.inf, np.inf, "N·m·s/rad")
+    k = np.abs(samples("branch_per_motor", branch_per_motor))
+    if np.any(k == 0):
         raise ParameterError(f"branch_per_motor = {k.tolist()}: expected lengths other than 0, one a branch")
     shares = {"shares_static": shares_static, "shares_viscous": shares_viscous}
-    p = {name: np.asarray(values, dtype=float) for name, values in shares.items()}
+    p = {name: samples(name, values) for name, values in shares.items()}
     for name, values in p.items():
         if values.shape != k.shape or np.any(values < 0) or abs(values.sum() - 1.0) > 1e-9:
             raise ParameterError(f"{name} = {values.tolist()}: expected {k.size} shares of power that add up to 1")
@@ -214,6 +216,7 @@ def shares_by_bearings(num_bearings: Sequence[int]) -> np.ndarray:
     return np.asarray(counts / counts.sum())
 
 
-def _require_joint(transmission: TendonTransmission, joint: int) -> None:
-    if not 1 <= joint <= transmission.num_joints:
+def require_joint(transmission: TendonTransmission, joint: int) -> None:
+    """Raises ParameterError unless there is such a joint, counted from 1."""
+    if not isinstance(joint, int | np.integer) or not 1 <= joint <= transmission.num_joints:
         raise ParameterError(f"joint = {joint}: expected 1 to {transmission.num_joints}")

@@ -12,6 +12,7 @@ import pandas as pd
 
 from tendonlab.papers.s1.device import GRAVITY, LOAD_LEVELS, example_device
 from tendonlab.papers.s1.identification import decompose, identify_joint, shares_by_bearings
+from tendonlab.procedures.check import positive, samples
 from tendonlab.routing import TendonTransmission
 
 NOISE = 5e-3  # N·m, of a motor torque [reconstructed]
@@ -125,6 +126,8 @@ def nominal_device() -> TendonTransmission:
 def write_dataset(folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, seed: int = 0) -> Path:
     """Write the twin's logs at `levels` of gravity, and the nominal simulator without the tension-proportional loss, as
     a dataset folder."""
+    for k, level in enumerate(samples("levels", levels)):
+        positive(f"levels[{k}]", level)
     target, rng = Path(folder), np.random.default_rng(seed)
     target.mkdir(parents=True, exist_ok=True)
     lines = [

@@ -10,6 +10,7 @@ import numpy as np
 from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
+from tendonlab.procedures.check import choice
 
 GRAVITY = 9.80665  # m/s^2
 PRELOAD = 200.0  # N, of the cables in all runs; reconstructed: printed for the cable test only
@@ -108,7 +109,10 @@ def constants(*, viscous_reading: str = "A") -> Constants:
 
 
 def identified(column: str = "value_SI") -> dict[str, dict[str, float]]:
-    """Table II as {"cable": {"K": …}, "cable 1 friction": {"a1": …}}; `column`: "value_SI" or "uncertainty_95_SI"."""
+    """Table II as {"cable": {"K": …}, "cable 1 friction": {"a1": …}}; `column`: "value_SI" or "uncertainty_95_SI".
+
+    Raises ParameterError for another column."""
+    choice("column", column, ("value_SI", "uncertainty_95_SI"))
     found: dict[str, dict[str, float]] = {}
     for row in table("S2_table2_identified").to_dict("records"):
         symbol = str(row["symbol"])

@@ -1,4 +1,4 @@
-"""Tables and acceptance numbers of S2, recomputed on the twins beside what is printed."""
+"""Tables of S2 and what is expected of its models, recomputed on the twins beside what is printed."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def fits(of: Constants, *, seed: int = 0) -> dict[str, Estimate]:
 
 
 def differences(of: Constants, found: dict[str, Estimate] | None = None) -> pd.DataFrame:
-    """Every number of Tables I and II, what follows from them, and B1 to B7: printed (or expected), computed,
-    difference, tolerance, within.
+    """Every number of Tables I and II, what follows from them, and what is expected of fits, energy, ripple and
+    force jumps: printed (or expected), computed, difference, tolerance, within.
 
-    `found`: what `fits` gives, made here unless given. A tolerance is that of the acceptance list B1 to B7; for the
-    bushings 2.5 half widths of the fit's own 95 % interval."""
+    `found`: what `fits` gives, made here unless given. Tolerances: 6 % of alpha, 15 % of
+    beta, 0.5 % of K, 5 % of c; for the bushings 2.5 half widths of the fit's own 95 % interval."""
     found = fits(of) if found is None else found
     rows = [*_derived(of), *_identified(of, found), *_splits(of), *_dynamics(of)]
     table = pd.DataFrame(rows, columns=["quantity", "printed", "computed", "tolerance"]).set_index("quantity")
@@ -55,7 +55,7 @@ Row = tuple[str, float, float, float]
 
 
 def _derived(of: Constants) -> list[Row]:
-    """Table I and what the sheet derives from it, to the digits that are printed."""
+    """Table I and what follows from it, to the digits that are printed."""
     times = of.time_constants()
     turn = of.with_(phi=0.0)
     return [
@@ -69,7 +69,7 @@ def _derived(of: Constants) -> list[Row]:
         ("I(0)/J_1", 37.46, float(equations.inertia(turn, 0.0)) / of.J_1, 5e-3),
         ("alpha pi/2 (N m)", 0.12205, 0.5 * np.pi * of.alpha, 5e-6),
         ("alpha beta (N m s/rad)", 1.554e-3, of.alpha * of.beta, 5e-7),
-        ("B7: F_r1 - F_r2 at theta = 0 (N)", 22.70, float(equations.holding_difference(turn, 0.0)), 5e-3),
+        ("F_r1 - F_r2 at theta = 0 (N)", 22.70, float(equations.holding_difference(turn, 0.0)), 5e-3),
     ]
 
 
@@ -88,7 +88,7 @@ def _identified(of: Constants, found: dict[str, Estimate]) -> list[Row]:
             rows.append((f"Table II: {name} (cable {cable})", printed, fit[name], 2.5 * fit.half_widths[name]))
     error = found["cable"].validation_error
     assert error is not None
-    return [*rows, ("B2: NRMSE on validation samples", 0.0, error, 0.02)]
+    return [*rows, ("NRMSE of the cable's fit on validation samples", 0.0, error, 0.02)]
 
 
 def _splits(of: Constants) -> list[Row]:
@@ -123,12 +123,12 @@ def _dynamics(of: Constants) -> list[Row]:
     inside = shifted(whole)
     outer, inner = (float(np.sqrt(np.mean((ours - real)[part] ** 2))) for part in (~inside, inside))
     return [
-        ("B4: energy drift, corrected (J)", 0.0, right, 1e-8),
-        ("B4: energy drift, as printed (J)", 1.17, wrong, 0.01),
-        ("B5: first T_shift of cable 1 (s)", 2.0, float(shifts[0]), 0.02),
-        ("B5: second T_shift of cable 1 (s)", 2.0, float(shifts[1]), 0.02),
-        ("B5: RMS force error outside the windows (N)", 0.0, outer, 2.0),
-        ("B5: RMS force error inside, N beyond 20", 0.0, min(inner - 20.0, 0.0), 0.0),
-        ("B6: ripple of the velocity at cruise (%)", 7.0, 100.0 * rippled, 1.0),
-        ("B6: without ripple (%)", 0.0, 100.0 * plain, 0.5),
+        ("energy drift, eq. 5 corrected (J)", 0.0, right, 1e-8),
+        ("energy drift, eq. 5 as printed (J)", 1.17, wrong, 0.01),
+        ("first T_shift of cable 1 (s)", 2.0, float(shifts[0]), 0.02),
+        ("second T_shift of cable 1 (s)", 2.0, float(shifts[1]), 0.02),
+        ("RMS force error outside the windows of T_shift (N)", 0.0, outer, 2.0),
+        ("RMS force error inside them, N short of 20", 0.0, min(inner - 20.0, 0.0), 0.0),
+        ("ripple of the velocity at cruise (%)", 7.0, 100.0 * rippled, 1.0),
+        ("velocity error at cruise without ripple (%)", 0.0, 100.0 * plain, 0.5),
     ]

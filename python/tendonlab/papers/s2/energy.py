@@ -1,4 +1,4 @@
-"""Energy balance of the free joint: what the printed sign and factor of eq. 5 would do (S2 acceptance B4)."""
+"""Energy balance of the free joint: what the printed sign and factor of eq. 5 would do."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.constants import Constants
+from tendonlab.procedures.check import positive, whole
 
 
 def free_swing(
@@ -23,7 +24,9 @@ def free_swing(
     """The joint without cables from `theta`, rad; columns theta, theta_rate, energy, J, by time "t", s (S2 eqs 5, 6).
 
     `coriolis`: "corrected" or "printed"; `tolerance`: relative error of a step. Integrated with Dormand-Prince 8(5,3).
-    """
+    Raises ParameterError for a duration that is not positive."""
+    positive("duration", duration, "s")
+    whole("num_samples", num_samples, 2)
 
     def rates(_: float, state: np.ndarray) -> list[float]:
         x_5 = of.J_1 * state[1]

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from tendonlab.errors import ParameterError
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.reference import reference
+from tendonlab.procedures.check import positive, whole
 
 TORQUE_SD, FORCE_SD = 4e-3, 1.5  # N*m, N
 RAMPS = (2e-5, -5e-5, 5e-5, -1e-4, 1e-4)  # m/s, of the elongation between 200 and 500 N
@@ -18,7 +20,10 @@ SAMPLE_TIME = 0.01  # s
 def gear_points(of: Constants, *, num_points: int = 30, fastest: float = 150.0, seed: int = 0) -> pd.DataFrame:
     """Fig. 9: mean and spread of the motor torque at set points of its speed, viscous part taken off.
 
-    Columns speed, rad/s, torque_mean, torque_std, N*m. Range and spread are reconstructed."""
+    Columns speed, rad/s, torque_mean, torque_std, N*m. Range and spread are reconstructed.
+    Raises ParameterError for a `fastest` speed that is not positive."""
+    positive("fastest", fastest, "rad/s")
+    whole("num_points", num_points, 1)
     random = np.random.default_rng(seed)
     speed = np.linspace(-fastest, fastest, num_points)
     mean = equations.gear_torque(of, speed) + TORQUE_SD * random.normal(size=num_points)
@@ -46,7 +51,9 @@ def bushing_loop(of: Constants, *, cable: int = 1, seed: int = 0, quantize: floa
     """Fig. 11: the joint sweeps 0, 0.7, -0.7, 0 rad at 0.04 rad/s; 7225 samples at 100 Hz, by time "t", s.
 
     Columns theta, rad, velocity, rad/s, force of that cable in its bushing, N. `quantize`: resolution, N (5 on the
-    rig); range, speed and noise are reconstructed."""
+    rig); range, speed and noise are reconstructed. Raises ParameterError for a cable that is neither 1 nor 2."""
+    if cable not in (1, 2):
+        raise ParameterError(f"cable = {cable!r}: expected 1 or 2")
     random = np.random.default_rng(seed)
     sweep = reference((0.0, 0.7, -0.7, 0.0), speed=0.04, dwell=0.0, step=SAMPLE_TIME, end=72.24)
     force = equations.bushing_force(of.bushings[cable - 1], sweep.angle, sweep.velocity, of.T)

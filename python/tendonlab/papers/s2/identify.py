@@ -15,6 +15,7 @@ from tendonlab.papers.s2.constants import BRANCHES
 from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.estimate import Estimate, from_jacobian
 from tendonlab.procedures import split
+from tendonlab.procedures.check import positive
 
 LOWEST_FORCE = 200.0  # N, below which the fibre of the cable is not linear
 REST = 1e-3  # rad/s, below which a joint velocity has no sense
@@ -96,7 +97,9 @@ def fit_bushing(
     `theta`, rad, `velocity` of the joint, rad/s (its sign chooses the branch; samples below `rest` are left out),
     `force`, N, shape (n,); `tension`: T, N, without which only b T is known. Each sense has its own four parameters and
     is fitted from the best of `num_edges` edges c within +-0.2 rad, where the model has a kink.
-    Raises ParameterError where one sense has fewer than 20 samples."""
+    Raises ParameterError where `tension` is not positive, where one sense has fewer than 20 samples or but one angle.
+    """
+    positive("tension", tension, "N")
     angle, speed, f = (np.asarray(values, dtype=float) for values in (theta, velocity, force))
     moving = np.abs(speed) > rest
     found: dict[str, float] = {}
@@ -106,6 +109,10 @@ def fit_bushing(
         here = moving & (speed * sense > 0)
         if np.count_nonzero(here) < 20:
             raise ParameterError(f"velocity: {np.count_nonzero(here)} samples of sense {sense:+g}; expected 20 or more")
+        if np.ptp(angle[here]) == 0.0:
+            raise ParameterError(
+                f"theta = {angle[here][0]} in all samples of sense {sense:+g}: expected angles that differ"
+            )
         names = (f"a{i}", f"b{i}1", f"b{i}2", f"c{i}")
         values, slopes, error = _fit_sense(angle[here], f[here], sense, names, tension, num_edges)
         found |= values

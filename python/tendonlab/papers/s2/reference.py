@@ -10,6 +10,7 @@ import numpy as np
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2.equations import Array
+from tendonlab.procedures.check import positive, samples, within
 
 
 @dataclass(frozen=True)
@@ -44,9 +45,17 @@ def reference(
     step: float = 1e-3,
 ) -> Reference:
     """Moves between `points`, rad, at `speed`, rad/s, with ramps of `acceleration`, rad/s^2, `dwell` s apart, the first
-    at `start` s. `end`: of time, s; 1 s after the last move unless given. Defaults: S2 pitfall 10 (reconstructed).
+    at `start` s. `end`: of time, s; 1 s after the last move unless given. The paper prints none of this:
+    the defaults are reconstructed.
 
-    Raises ParameterError where a move is too short to reach its speed."""
+    Raises ParameterError for a speed, acceleration or step that is not positive, a negative dwell, and where a move is
+    too short to reach its speed."""
+    samples("points", points)
+    positive("speed", speed, "rad/s")
+    positive("acceleration", acceleration, "rad/s^2")
+    positive("step", step, "s")
+    within("dwell", dwell, 0.0, np.inf, "s")
+    within("start", start, -np.inf, np.inf, "s")
     ramp = speed / acceleration
     pieces, moves, now = [], [], start
     for a, b in pairwise(points):

@@ -1,4 +1,4 @@
-"""The twin of S2: cables and joint behind nuts whose motion is prescribed, by the linearly implicit step of the sheet.
+"""The twin of S2: cables and joint behind nuts whose motion is prescribed, by a linearly implicit step.
 
 It shares no law and no stepper with the library. The gaps that the paper names are switches: velocity ripple of the
 gear, and stiction that holds the sense of bushing friction at rest.

@@ -17,6 +17,7 @@ from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.compiled import NAMES, CompiledRecord
 from tendonlab.papers.s3.groups import Record
 from tendonlab.papers.s3.rig import FrictionParameters, paper_parameters
+from tendonlab.procedures.check import whole
 
 WEAK_CHANGE, WEAK_RISE = 0.2, 0.05  # a parameter is weak if this change of it raises the error by less than this share
 
@@ -35,6 +36,7 @@ class Objective:
     from both ends."""
 
     def __init__(self, records: Sequence[Record]) -> None:
+        whole("number of records", len(records), 1)
         self.compiled = [CompiledRecord.of(record) for record in records]
 
     def residual(self, p: FrictionParameters) -> np.ndarray:

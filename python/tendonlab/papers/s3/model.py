@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.rig import FrictionParameters, Rig, assumed_rig
 from tendonlab.papers.s3.shapes import BumpShape
 from tendonlab.papers.s3.statics import sheaths
+from tendonlab.procedures.check import samples, within
 from tendonlab.procedures.sheath_shape import Shape
 
 if TYPE_CHECKING:
@@ -62,9 +64,9 @@ def predict(
     rig = assumed_rig() if rig is None else rig
     law = p.in_unit(velocity_unit)
     run = sheaths(shape, T_s, rig.r_in, rig.r_out, pretension_profile).transmit(
-        input_torque=np.asarray(tau_in, dtype=float), velocity=np.asarray(v, dtype=float),
-        friction=[law.mu_d, law.mu_s, law.v_s, law.v_thres, law.s_v], periods=periods(dt, gate_period), start=y0,
-        release=release,
+        input_torque=samples("tau_in", tau_in), velocity=samples("v", v),
+        friction=[law.mu_d, law.mu_s, law.v_s, law.v_thres, law.s_v], periods=periods(dt, gate_period),
+        start=within("y0", y0, -math.inf, math.inf, "N*m"), release=release,
     )  # fmt: skip
     return Prediction(run["output_torque"], run["gate"], run["friction_coefficient"])
 
@@ -95,5 +97,8 @@ def predict_log(
 
 
 def mean_squared_error(measured: np.ndarray, predicted: np.ndarray) -> float:
-    """The paper's objective, unit of the signal squared."""
-    return float(np.mean((np.asarray(measured, dtype=float) - np.asarray(predicted, dtype=float)) ** 2))
+    """The paper's objective, unit of the signal squared. Raises ParameterError for rows unequal, empty or with NaN."""
+    y, y_hat = samples("measured", measured), samples("predicted", predicted)
+    if len(y) != len(y_hat):
+        raise ParameterError(f"predicted has {len(y_hat)} samples: expected {len(y)}, as many as measured")
+    return float(np.mean((y - y_hat) ** 2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,7 @@ from tendonlab import _core
 from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.shapes import BumpShape
+from tendonlab.procedures.check import within
 from tendonlab.procedures.sheath_shape import Shape
 
 PROFILES = ("decaying", "uniform")
@@ -93,6 +95,7 @@ def sheaths(
 
 def capstan_tension(tension_in: np.ndarray | float, mu: float, theta: float, *, direction: int = -1) -> np.ndarray:
     """T_out, N, behind a wrap angle theta, rad: T_in exp(direction mu theta). Source: S3 eq. 6, its lambda = ±1."""
+    mu = within("mu", mu, 0.0, math.inf)
     return np.asarray(np.asarray(tension_in, dtype=float) * np.exp(_sign(direction) * mu * theta))
 
 

@@ -12,6 +12,7 @@ from tendonlab.papers.s4.constants import RESOLUTION, contact, design, identifie
 from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.rig import NOISE, Case, measured, run_rig
 from tendonlab.papers.s4.twin import TENSIONS
+from tendonlab.procedures.check import positive
 
 SAMPLE_STEP = 10  # every tenth sample of 1 kHz: 100 Hz
 SOFT_START, EASE = 0.5, 2  # s: what is differentiated must not jump at the start of a record
@@ -66,6 +67,7 @@ def write_rig(
 
 def softer(of: Case, *, k: float) -> Case:
     """The same rig with rigid ends and a cable of stiffness k, N/m: what elastic ends are easily mistaken for."""
+    k = positive("k", k, "N/m")
     return replace(of, meaning=f"softer cable, k = {k:g} N/m", k=k, ends=None)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures import reversal_mask
+from tendonlab.procedures.check import positive, samples
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,8 +28,9 @@ def identify_stiffness(T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: fl
     """Stiffness of a middle section from its tension T22, N, against the synchronous error `dtheta`, rad (S4 eq. 37).
 
     With `T_p` given k is the closed form sum (T22 - T_p) r dtheta / sum (r dtheta)²; without, both are fitted, since
-    the relation is affine. Raises ParameterError where the error does not vary."""
-    T22, stretch = np.asarray(T22, dtype=float), r * np.asarray(dtheta, dtype=float)
+    the relation is affine. Raises ParameterError where the error does not vary or a sample is not finite."""
+    T22, dtheta = samples("T22", T22), samples("dtheta", dtheta)
+    stretch = positive("r", r, "m") * dtheta
     if not np.ptp(stretch) > 0:
         raise ParameterError("dtheta is constant: expected a synchronous error that varies; it identifies no stiffness")
     if T_p is None:
@@ -41,19 +43,22 @@ def identify_stiffness(T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: fl
 
 
 def pointwise_stiffness(T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: float, share: float = 0.2) -> np.ndarray:
-    """k sample by sample, N/m (S4 eq. 36); NaN where |dtheta| is below `share` of its largest: noise divided."""
-    dtheta = np.asarray(dtheta, dtype=float)
+    """k sample by sample, N/m (S4 eq. 36); NaN where |dtheta| is not above `share` of its largest, so also
+    where it is zero: the paper leaves out what is below 20 %, noise divided by next to nothing."""
+    T22, dtheta = samples("T22", T22), samples("dtheta", dtheta)
     large = np.abs(dtheta) > share * np.max(np.abs(dtheta))
     k = np.full(dtheta.shape, np.nan)
-    k[large] = (np.asarray(T22, dtype=float)[large] - T_p) / (r * dtheta[large])
+    k[large] = (T22[large] - T_p) / (positive("r", r, "m") * dtheta[large])
     return k
 
 
 def friction_coefficient(T_out: Any, T_in: Any, wrap: Any) -> Any:
-    """mu_c = |ln(T_out / T_in) / theta_w| (S4 eq. 38). Raises ParameterError for a tension at or below zero: slack."""
+    """mu_c = |ln(T_out / T_in) / theta_w| (S4 eq. 38). Raises ParameterError for a tension (slack) or a wrap
+    angle at or below zero."""
     for name, T in (("T_out", T_out), ("T_in", T_in)):
         if not np.min(T) > 0:
             raise ParameterError(f"{name} = {float(np.min(T)):g}: expected more than 0 N; the ratio means nothing")
+    positive("wrap", np.min(wrap), "rad")
     return np.abs(np.log(np.asarray(T_out) / T_in) / wrap)
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from tendonlab.procedures.check import positive, samples
+
 
 def synchronous_error(run: pd.DataFrame) -> pd.Series:
     """Delta theta = theta_2 - theta_1, rad, by time."""
@@ -80,5 +82,6 @@ def dwell(run: pd.DataFrame, *, reversal: float, moved: float) -> Dwell:
 
 
 def nrmse(simulated: np.ndarray, measured: np.ndarray) -> float:
-    """Root mean square difference over the range of what was measured."""
-    return float(np.sqrt(np.mean((simulated - measured) ** 2)) / np.ptp(measured))
+    """Root mean square difference over the range of `measured`. Raises ParameterError where that does not vary."""
+    reach = positive("range of measured", float(np.ptp(samples("measured", measured))))
+    return float(np.sqrt(np.mean((simulated - measured) ** 2)) / reach)

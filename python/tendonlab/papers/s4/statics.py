@@ -5,12 +5,14 @@ the sign of joint j's velocity. Angles in rad, tensions in N, torques in N·m; a
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s4.constants import Mechanism
+from tendonlab.procedures.check import whole, within
 
 Array = Any  # a number or an array of numbers: the closed forms take either
 
@@ -67,7 +69,7 @@ def static_tensions(
     theta_1: Array, theta_2: Array, *, s_1: Array, s_2: Array, mechanism: Mechanism, mu: float
 ) -> Tensions:
     """Tensions in steady slip, joints turning in the directions s_1 and s_2 (S4 eqs 14 to 16)."""
-    m = mechanism
+    m, mu = mechanism, within("mu", mu, 0.0, math.inf)
     w = wrap_angles(theta_1, theta_2, theta_w0=m.theta_w0)
     pull = m.k * stretch(theta_1, theta_2, r=m.r)
     T12, T22 = m.T_p - pull, m.T_p + pull
@@ -96,13 +98,13 @@ def stiffness(theta_1: Array, *, sign: int, mechanism: Mechanism, mu: float) -> 
 
     A joint that sticks is stiffer: 2 k r² and the bristles of two contacts, 2 sigma_0 r²."""
     m = mechanism
-    return np.exp(mu * np.multiply(theta_1, sign)) * np.cosh(mu * m.theta_w0) * frictionless_stiffness(m)
+    return np.exp(mu * np.multiply(theta_1, _direction(sign))) * np.cosh(mu * m.theta_w0) * frictionless_stiffness(m)
 
 
 def equilibrium_error(*, sign: int, mechanism: Mechanism, mu: float) -> float:
     """Synchronous error at which joint 1 is in balance while it turns in the direction `sign`, rad (S4 eqs 20, 23)."""
     m = mechanism
-    return float(sign * m.T_p * np.tanh(mu * m.theta_w0) / (m.k * m.r))
+    return float(_direction(sign) * m.T_p * np.tanh(mu * m.theta_w0) / (m.k * m.r))
 
 
 def backlash(*, mechanism: Mechanism, mu: float) -> float:
@@ -112,4 +114,11 @@ def backlash(*, mechanism: Mechanism, mu: float) -> float:
 
 def series_stiffness(*sections: float) -> float:
     """Stiffness of sections in series, N/m: what a middle section looks like where its ends stretch too."""
+    whole("number of sections", len(sections), 1)
     return float(1.0 / np.sum(1.0 / np.asarray(sections)))
+
+
+def _direction(sign: int) -> int:
+    if sign not in (-1, 1):
+        raise ParameterError(f"sign = {sign}: expected +1 or -1")
+    return sign
