@@ -39,7 +39,8 @@ py::dict system_info(const std::string& kind) {
       py::arg("parameters") = listed(s.parameters, parameter_info), py::arg("effects") = listed(s.effects, effect_info),
       py::arg("elements") = listed(s.elements, [](const ElementInfo& e) { return py::make_tuple(e.name, e.axis); }),
       py::arg("ports") = listed(s.ports, [](const PortInfo& p) { return py::make_tuple(p.name, p.element); }),
-      py::arg("nominal") = s.nominal, py::arg("commanded") = s.commanded, py::arg("sampled") = s.sampled, py::arg("steady") = s.steady);
+      py::arg("nominal") = s.nominal, py::arg("commanded") = s.commanded, py::arg("sampled") = s.sampled,
+      py::arg("steady") = s.steady);
 }
 
 Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
