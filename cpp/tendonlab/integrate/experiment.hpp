@@ -51,5 +51,20 @@ struct Trajectory {
   std::vector<double> gradient;  ///< [column][channel][sample]
   std::vector<double> port;      ///< [port][velocity, position, load, force][sample]
   long attempts = 0, rejected = 0, events = 0;
+
+  /// Writes one output at one sample, and its derivatives into `width` columns of the gradient from `column` on.
+  template <class T>
+  TENDONLAB_INLINE void write(std::size_t channel, std::size_t sample, const T& of, int column, int width) {
+    const auto stride = static_cast<std::size_t>(channels) * static_cast<std::size_t>(samples);
+    const std::size_t place = channel * static_cast<std::size_t>(samples) + sample;
+    value[place] = plain(of);
+    if constexpr (!std::is_same_v<T, double>) {
+      double* cell = &gradient[static_cast<std::size_t>(column) * stride + place];
+      of.each_derivative(width, [&](double d) {
+        *cell = d;
+        cell += stride;
+      });
+    }
+  }
 };
 }  // namespace tendonlab::integrate

@@ -32,7 +32,8 @@ class Recorder {
         const Y y = state(s, T((time[next[0]] - start) * per_length), T(time[next[0]]));
         auto coupling = couple(y, frame, in);
         const auto seen = observe(y, coupling);
-        for (std::size_t c = 0; c < channels; ++c) write(c, next[0], system.sensor[c].apply(seen[c]));
+        for (std::size_t c = 0; c < channels; ++c)
+          out.write(c, next[0], system.sensor[c].apply(seen[c]), column, width);
         if (records_ports) write_ports(next[0], y, coupling(), frame, in);
       }
     } else {
@@ -42,7 +43,7 @@ class Recorder {
           const bool begun = plain(share) > 0;  // before the record all was as at its start
           const Y y = state(s, begun ? share : T(0.0), begun ? then : T(start));
           auto coupling = couple(y, frame, in);
-          write(c, next[c], system.sensor[c].apply(observe(y, coupling)[c]));
+          out.write(c, next[c], system.sensor[c].apply(observe(y, coupling)[c]), column, width);
         }
     }
     if (!records_ports || !late) return;  // ports have no sensors
@@ -81,17 +82,6 @@ class Recorder {
       return system.observe(y.at, acts, port);
     else
       return system.observe(y.at, acts);
-  }
-  void write(std::size_t channel, std::size_t sample, const T& value) {
-    out.value[channel * time.size() + sample] = plain(value);
-    if constexpr (!std::is_same_v<T, double>) {
-      const std::size_t stride = channels * time.size();
-      double* cell = &out.gradient[static_cast<std::size_t>(column) * stride + channel * time.size() + sample];
-      value.each_derivative(width, [&](double d) {
-        *cell = d;
-        cell += stride;
-      });
-    }
   }
   /// Velocity, position, load and force of each port; a sticking port's friction is what holds it, borne by the first
   /// slot of its mode.

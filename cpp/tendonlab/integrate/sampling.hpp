@@ -55,7 +55,8 @@ class Sampling {
     }
     out.attempts = static_cast<long>(time.size());
     for (std::size_t c = 0; c < channels; ++c)
-      for (std::size_t k = 0; k < time.size(); ++k) write(c, k, system.sensor[c].apply(seen(all, c, k)));
+      for (std::size_t k = 0; k < time.size(); ++k)
+        out.write(c, k, system.sensor[c].apply(seen(all, c, k)), column, width);
   }
 
  private:
@@ -69,17 +70,6 @@ class Sampling {
     if (then <= time.front() || k == 0) return all[0][c];
     const T share = ((time[k] - time[i]) - late) / (time[i + 1] - time[i]);
     return all[i][c] + share * (all[i + 1][c] - all[i][c]);
-  }
-  void write(std::size_t channel, std::size_t sample, const T& value) {
-    out.value[channel * time.size() + sample] = plain(value);
-    if constexpr (!std::is_same_v<T, double>) {
-      const std::size_t stride = channels * time.size();
-      double* cell = &out.gradient[static_cast<std::size_t>(column) * stride + channel * time.size() + sample];
-      value.each_derivative(width, [&](double d) {
-        *cell = d;
-        cell += stride;
-      });
-    }
   }
   template <class Shown>
   void write_ports(std::size_t sample, const Shown& of) {
