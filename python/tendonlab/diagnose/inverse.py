@@ -85,12 +85,12 @@ def _column(system: System, name: str, velocity: np.ndarray) -> np.ndarray:
         system.info.parameter(q).own: 1.0 if q == name else 0.0 if system.info.parameter(q).amplitude else value
         for q, value in own.items()
     }
-    place = {law: module for module, law in _core.laws()}[p.effect or ""]
     if p.element == "actuation" and p.effect == "offset":
         return np.full_like(velocity, -system.parameters.get("torque_constant", 1.0))
-    if place != "friction":
+    law = getattr(_core.friction, (p.effect or "").title().replace("_", ""), None)
+    # Laws of other groups may bear the same name; the equation tells them apart.
+    if law is None or law.equation != system.info.effect(f"{p.element}:{p.effect}").equation:
         return np.zeros_like(velocity)
-    law = getattr(_core.friction, (p.effect or "").title().replace("_", ""))
     return np.asarray(law(**switched).force(velocity=velocity))
 
 
