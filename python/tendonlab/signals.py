@@ -32,12 +32,12 @@ def smooth(time: np.ndarray, values: np.ndarray) -> _core.Signal:
 def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation; through them where they
     carry no noise, which leaves nothing to choose by."""
-    from scipy.interpolate import PPoly, make_smoothing_spline
+    from tendonlab.smoothing import smoothing_spline  # loads scipy
 
     kept = np.isfinite(values)
     if white_noise_sd(values) <= ROUNDING * float(np.ptp(values[kept])):
         return smooth(time[kept], values[kept])
-    return _from_pieces(PPoly.from_spline(make_smoothing_spline(time[kept], values[kept])))
+    return _from_pieces(smoothing_spline(time[kept], values[kept]))
 
 
 def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:

@@ -11,7 +11,8 @@ using integrate::Signal;
 py::dict signal_info(const SignalInfo& s) {
   return py::dict(py::arg("name") = s.name, py::arg("meaning") = s.meaning,
                   py::arg("dimension") = words(s.dimension).name, py::arg("required") = s.required,
-                  py::arg("axis") = s.axis, py::arg("between") = s.between, py::arg("unless") = s.unless);
+                  py::arg("axis") = s.axis, py::arg("between") = s.between, py::arg("unless") = s.unless,
+                  py::arg("missed") = s.missed);
 }
 py::dict parameter_info(const ParameterInfo& p) {
   return py::dict(py::arg("name") = p.name, py::arg("element") = p.element, py::arg("effect") = p.effect,
@@ -38,7 +39,8 @@ py::dict system_info(const std::string& kind) {
       py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
       py::arg("parameters") = listed(s.parameters, parameter_info), py::arg("effects") = listed(s.effects, effect_info),
       py::arg("elements") = listed(s.elements, [](const ElementInfo& e) { return py::make_tuple(e.name, e.axis); }),
-      py::arg("ports") = listed(s.ports, [](const PortInfo& p) { return py::make_tuple(p.name, p.element); }),
+      py::arg("ports") =
+          listed(s.ports, [](const PortInfo& p) { return py::make_tuple(p.name, p.element, words(p.load).name); }),
       py::arg("nominal") = s.nominal, py::arg("commanded") = s.commanded, py::arg("sampled") = s.sampled,
       py::arg("steady") = s.steady);
 }

@@ -35,7 +35,8 @@ inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
                                                      {"acceleration", "m/s^2", "m/s^2"},
                                                      {"line_compliance", "m/N", "m/N"},
                                                      {"per_flow_squared", "s^2/rad^2", "s^2/m^2"},
-                                                     {"inverse_flow", "s/rad", "s/m"}};
+                                                     {"inverse_flow", "s/rad", "s/m"},
+                                                     {"effort_per_load", "1", "1"}};
 inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape", "condition"};
 
 inline const DimensionWords& words(Dimension dimension) {

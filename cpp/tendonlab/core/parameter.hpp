@@ -10,7 +10,8 @@ namespace tendonlab {
 inline constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// Effort and flow are N·m and rad/s on a rotary axis, N and m/s on a linear one; those up to `stiffness` follow from
-/// them. The others mean the same on every axis.
+/// them. The others mean the same on every axis. `effort_per_load` is what a law loses per load that its port sees: a
+/// ratio, but an effort without upper bound where that load is itself a ratio (systems::Port::load).
 enum class Dimension {
   effort,
   flow,
@@ -40,7 +41,8 @@ enum class Dimension {
   acceleration,
   line_compliance,
   per_flow_squared,
-  inverse_flow
+  inverse_flow,
+  effort_per_load
 };
 enum class Purpose {
   structure,  ///< of the system itself

@@ -32,16 +32,17 @@ struct CableJoint {
     num_ports
   };
   enum ModeOf { joint_sense, motor_sense, guide_sense, nut_sense };
-  static constexpr std::array<Port, num_ports> ports{{{"joint", joint_sense},
-                                                      {"motor", motor_sense},
-                                                      {"winding"},
-                                                      {"gear"},
-                                                      {"cable", -1, -1, Axis::linear, false, "cable_1"},
-                                                      {"cable", -1, -1, Axis::linear, false, "cable_2"},
-                                                      {"bushing_1", guide_sense, -1, Axis::linear, true},
-                                                      {"bushing_2", guide_sense, -1, Axis::linear, true},
-                                                      {"stiction", nut_sense, -1, Axis::linear, true, "stiction_1"},
-                                                      {"stiction", nut_sense, -1, Axis::linear, true, "stiction_2"}}};
+  static constexpr std::array<Port, num_ports> ports{
+      {{"joint", joint_sense},
+       {"motor", motor_sense},
+       {"winding", -1, -1, Axis::of_system, false, {}, Dimension::voltage},
+       {"gear"},
+       {"cable", -1, -1, Axis::linear, false, "cable_1"},
+       {"cable", -1, -1, Axis::linear, false, "cable_2"},
+       {"bushing_1", guide_sense, -1, Axis::linear, true},
+       {"bushing_2", guide_sense, -1, Axis::linear, true},
+       {"stiction", nut_sense, -1, Axis::linear, true, "stiction_1"},
+       {"stiction", nut_sense, -1, Axis::linear, true, "stiction_2"}}};
   static constexpr bool joined[num_ports][2] = {{true, false}, {false, true}, {false, true}, {false, true},
                                                 {true, true},  {true, true},  {false, true}, {false, true},
                                                 {false, true}, {false, true}};

@@ -7,15 +7,15 @@ namespace tendonlab::systems {
 ///   T = T_f(speed; relative load, transmission ratio)                     (S0 eq. 10)
 ///
 /// speed: of the input, rad/s; T: on the input's side, N·m, with the sign of the speed. The slot carries the relative
-/// load (1: own weight only), so `load_dependence` is in N·m per unit of it. The default friction is the load-and-ratio
-/// model; a simulator that knows no load has `contact:static_lugre` and `contact:viscous` instead.
+/// load (1: own weight only), so that `contact:load_dependence` is in N·m per unit of it. The default friction is the
+/// load-and-ratio model; a simulator that knows no load has `contact:static_lugre` and `contact:viscous` instead.
 template <class T>
 struct FrictionMap {
   static constexpr std::string_view name = "friction_map", equation = "T = friction(speed, relative_load)";
   static constexpr int dof = 0, directions = 0, sides = 0;
   static constexpr bool sampled = true, commanded = false, plain_names = true;
   static constexpr std::size_t carried = 0;
-  static constexpr std::array<Port, 1> ports{{{"contact"}}};
+  static constexpr std::array<Port, 1> ports{{{"contact", -1, -1, Axis::of_system, false, {}, Dimension::ratio}}};
   static constexpr std::array<Input, 1> inputs{
       {{"speed", "speed of the input shaft", Dimension::flow, true, Between::linear}}};
   static constexpr std::array<Output, 1> outputs{

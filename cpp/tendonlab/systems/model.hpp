@@ -28,6 +28,7 @@ struct SignalInfo {
   bool required;
   int axis;
   std::string between, unless;  ///< inputs only
+  bool missed;                  ///< inputs only
 };
 /// A place where laws sit; `axis` is empty where it is the system's.
 struct ElementInfo {
@@ -35,6 +36,7 @@ struct ElementInfo {
 };
 struct PortInfo {
   std::string name, element;
+  Dimension load;
 };
 struct SystemInfo {
   std::string kind, equation;

@@ -19,6 +19,18 @@ std::string axis_of(const std::string& element) {
     if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
   return {};
 }
+/// The parameter with what an effort per load is under the load of its element.
+template <class System>
+ParameterInfo under_load(ParameterInfo p) {
+  if (p.dimension != Dimension::effort_per_load) return p;
+  for (const auto& port : System::ports)
+    if (port.element == p.element && port.load == Dimension::ratio) {
+      p.dimension = Dimension::effort, p.upper = inf;
+      return p;
+    }
+  p.dimension = Dimension::ratio;
+  return p;
+}
 /// Where the parameter stands that `holder` calls `own`, if it is there already.
 inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const Holder& holder,
                                            std::string_view own) {
@@ -38,20 +50,21 @@ SystemInfo describe() {
   if constexpr (systems::sampled<System>) info.steady = integrate::memories<System> == 0 && System::carried == 0;
   for (const auto& s : System::inputs)
     info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1,
-                           systems::word(s.between), std::string(s.unless)});
+                           systems::word(s.between), std::string(s.unless), s.missed});
   for (const auto& s : System::outputs)
-    info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}});
+    info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}, false});
   for (const auto& port : System::ports)
-    info.ports.push_back({std::string(port.name.empty() ? port.element : port.name), std::string(port.element)});
+    info.ports.push_back(
+        {std::string(port.name.empty() ? port.element : port.name), std::string(port.element), port.load});
   for (const auto& name : System::nominal) info.nominal.emplace_back(name);
   systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) {
     info.elements.push_back({element, systems::axis_of<System>(element)});
   });
   systems::for_each_parameter_of(system, [&](const systems::Holder& of, const auto& p, auto&) {
     if (!systems::place_of(info.parameters, of, p.name))
-      info.parameters.push_back({systems::parameter_name<System>(of.element, of.law, p.name), of.element,
-                                 std::string(of.law), std::string(p.name), p.dimension, p.purpose, p.typical, p.lower,
-                                 p.upper, std::string(p.meaning)});
+      info.parameters.push_back(systems::under_load<System>(
+          {systems::parameter_name<System>(of.element, of.law, p.name), of.element, std::string(of.law),
+           std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper, std::string(p.meaning)}));
   });
   systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
     using Law = std::decay_t<decltype(law)>;

@@ -33,23 +33,27 @@ enum class Axis { of_system, rotary, linear };
 /// Where a slot sits: its element, whether its force depends on the direction of its sliding (and which mode that is),
 /// whether it has a gap (and which mode is its side); a mode -1 is none. `axis`: what it slides along. `driven`: its
 /// velocity is prescribed by inputs, so it never sticks: its direction is that of the last motion. Ports of one element
-/// carry the same laws with the same parameters; each then has a `name` of its own.
+/// carry the same laws with the same parameters; each then has a `name` of its own. `load`: what that is which the slot
+/// sees as its load.
 struct Port {
   std::string_view element;
   int direction = -1, side = -1;
   Axis axis = Axis::of_system;
   bool driven = false;
   std::string_view name = {};
+  Dimension load = Dimension::effort;
 };
 /// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated.
 enum class Between { hold, linear, smooth };
-/// `unless`: an input that takes the place of this one where it was logged.
+/// `unless`: an input that takes the place of this one where it was logged. `missed`: optional since a rig may lack the
+/// part that it drives; where it was not logged although a measured output depends on it, users are told that it is 0.
 struct Input {
   std::string_view name, meaning;
   Dimension dimension;
   bool required;
   Between between;
   std::string_view unless = {};
+  bool missed = false;
 };
 /// The public name of a parameter where it is not made by the rule: {effect, own name, public name}.
 struct Renamed {

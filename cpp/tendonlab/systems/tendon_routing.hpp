@@ -35,16 +35,16 @@ struct TendonRouting : tendon::Entries<T> {
                                                          {"gear", -1, -1, Axis::rotary, false, "gear_2"},
                                                          {"gear", -1, -1, Axis::rotary, false, "gear_3"},
                                                          {"gear", -1, -1, Axis::rotary, false, "gear_4"}}};
-  // The first joint moves on every device; what another one lacks is 0.
+  // The first joint moves on every device; what another one lacks is 0, which is a surprise where its torque shows.
   static constexpr std::array<Input, 2 * n> inputs{
       {{"motor_velocity_1", "velocity of motor 1", Dimension::angular_speed, true, Between::linear},
-       {"motor_velocity_2", "velocity of motor 2", Dimension::angular_speed, false, Between::linear},
-       {"motor_velocity_3", "velocity of motor 3", Dimension::angular_speed, false, Between::linear},
-       {"motor_velocity_4", "velocity of motor 4", Dimension::angular_speed, false, Between::linear},
-       {"external_torque_1", "torque that joint 1 needs", Dimension::torque, false, Between::linear},
-       {"external_torque_2", "torque that joint 2 needs", Dimension::torque, false, Between::linear},
-       {"external_torque_3", "torque that joint 3 needs", Dimension::torque, false, Between::linear},
-       {"external_torque_4", "torque that joint 4 needs", Dimension::torque, false, Between::linear}}};
+       {"motor_velocity_2", "velocity of motor 2", Dimension::angular_speed, false, Between::linear, {}, true},
+       {"motor_velocity_3", "velocity of motor 3", Dimension::angular_speed, false, Between::linear, {}, true},
+       {"motor_velocity_4", "velocity of motor 4", Dimension::angular_speed, false, Between::linear, {}, true},
+       {"external_torque_1", "torque that joint 1 needs", Dimension::torque, false, Between::linear, {}, true},
+       {"external_torque_2", "torque that joint 2 needs", Dimension::torque, false, Between::linear, {}, true},
+       {"external_torque_3", "torque that joint 3 needs", Dimension::torque, false, Between::linear, {}, true},
+       {"external_torque_4", "torque that joint 4 needs", Dimension::torque, false, Between::linear, {}, true}}};
   static constexpr std::array<Output, n> outputs{{{"motor_torque_1", "torque of motor 1", Dimension::torque, -1},
                                                   {"motor_torque_2", "torque of motor 2", Dimension::torque, -1},
                                                   {"motor_torque_3", "torque of motor 3", Dimension::torque, -1},
