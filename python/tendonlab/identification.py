@@ -33,17 +33,11 @@ class Problem:
 
     def solve(self, *, cancel: _core.Cancel | None = None, max_iterations: int = 50) -> dict[str, Any]:
         """See `_core.fit`. Raises NumericalError where a simulation fails at the start."""
-        return _core.fit(
-            self.system.kind,
-            self.values,
-            self.system.active(keep_zero=True),
-            self.tasks,
-            [f.core() for f in self.free],
-            self.settings,
-            initial=self.initial,
-            cancel=cancel,
-            max_iterations=max_iterations,
-        )
+        return _core.fit(*self._stated(), initial=self.initial, cancel=cancel, max_iterations=max_iterations)
+
+    def linearise(self) -> dict[str, Any]:
+        """What `solve` gives, at the start and unsolved. Raises NumericalError where a simulation fails."""
+        return _core.linearise(*self._stated(), initial=self.initial)
 
     def at(self, values: Sequence[float], initial: Sequence[Sequence[float]]) -> Problem:
         """The same problem started from these values of all parameters and of the free initial states."""
@@ -53,6 +47,10 @@ class Problem:
             free=tuple(f.started(values[f.index]) for f in self.free),
             initial=tuple(tuple(state) for state in initial),
         )
+
+    def _stated(self) -> tuple[Any, ...]:
+        active, free = self.system.active(keep_zero=True), [f.core() for f in self.free]
+        return self.system.kind, self.values, active, self.tasks, free, self.settings
 
     def without(self, name: str, value: float) -> Problem:
         """The same problem with one free parameter held at `value`."""
@@ -66,9 +64,10 @@ class Identification:
     """What `identify` found.
 
     `parameters`: indexed by name; value, nominal (0 where the simulator had none), sd, ci95_lower, ci95_upper, unit,
-    at_bound. `correlations`: of the free parameters' coordinates. `residuals`: for each experiment a frame by time, s,
-    with a column an output, in noise sd. `initial`: fitted initial states by experiment. `system`: the simulator with
-    the fitted values. `cost`: half the sum of squared residuals, priors included."""
+    at_bound, informed. Where no measured sample depends on a parameter, it is not informed: held at its nominal value,
+    with the sd and interval of its prior. `correlations`: of the free parameters' coordinates. `residuals`: for each
+    experiment a frame by time, s, with a column an output, in noise sd. `initial`: fitted initial states by experiment.
+    `system`: the simulator with the fitted values. `cost`: half the sum of squared residuals, priors included."""
 
     system: System
     parameters: pd.DataFrame
@@ -92,6 +91,11 @@ class Identification:
     def at_bound(self) -> tuple[str, ...]:
         """Parameters that ended at a bound: their data want to go further."""
         return tuple(str(name) for name in self.parameters.index[self.parameters["at_bound"]])
+
+    @property
+    def not_informed(self) -> tuple[str, ...]:
+        """Parameters that these data say nothing about."""
+        return tuple(str(name) for name in self.parameters.index[~self.parameters["informed"]])
 
     def ci95(self, name: str) -> tuple[float, float]:
         """Interval that holds the parameter in 95 % of such data. Raises ParameterError for one that was not fitted."""
@@ -154,6 +158,7 @@ class Identification:
                     "unit": row["unit"],
                     "ci95": [row["ci95_lower"], row["ci95_upper"]],
                     "at_bound": bool(row["at_bound"]),
+                    "informed": bool(row["informed"]),
                 }
                 for name, row in rows.items()
             },
@@ -164,12 +169,18 @@ class Identification:
 
     def __repr__(self) -> str:
         state = "converged" if self.converged else f"not converged: {self.message}"
-        shown = ", ".join(f"{n} = {r['value']:.4g} ± {r['sd']:.2g} {r['unit']}" for n, r in self.parameters.iterrows())
-        return f"Identification({self.system.kind}, {state}; {shown})"
+        fitted = self.parameters[self.parameters["informed"]].iterrows()
+        shown = ", ".join(f"{n} = {r['value']:.4g} ± {r['sd']:.2g} {r['unit']}" for n, r in fitted)
+        return f"Identification({self.system.kind}, {state}; {shown}{self._silence('; ')})"
 
     def _repr_html_(self) -> str:
         state = "converged" if self.converged else f"<b>not converged</b>: {escape(self.message)}"
-        return f"<p>{state}</p>{self.parameters.to_html(float_format=lambda v: f'{v:.4g}')}"
+        table = self.parameters.to_html(float_format=lambda v: f"{v:.4g}")
+        return f"<p>{state}{escape(self._silence('; '))}</p>{table}"
+
+    def _silence(self, before: str) -> str:
+        held = ", ".join(self.not_informed)
+        return f"{before}not informed by these data: {held}" if held else ""
 
     def _require(self, name: str) -> None:
         if name not in self.parameters.index:

@@ -14,6 +14,7 @@ from tqdm import tqdm
 from tendonlab import _core, priors
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identification import Identification, Problem
+from tendonlab.informed import hold
 from tendonlab.replay import Prepared, choose, prepare
 from tendonlab.signals import white_noise_sd
 from tendonlab.uncertainty import uncertainty
@@ -42,7 +43,8 @@ def identify(
     adding `effects` ("joint:stribeck"); parameters with sd = 0 stay fixed.
 
     Output error: simulated against measured outputs, in their noise sd (stated, else estimated), with priors, bounds,
-    conditions and additions, and uncertain initial states as nuisances. `experiments`: names, instead of the training
+    conditions and additions, and uncertain initial states as nuisances. A parameter on which no measured sample depends
+    is held at its nominal value and told (`not_informed`). `experiments`: names, instead of the training
     ones. `num_starts`: the first from the nominal values, the others drawn from the priors with `seed`; the best is
     kept. `tolerance`: relative error of a step of the simulation. Ctrl-C keeps the best so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect,
@@ -175,8 +177,9 @@ def _result(
 ) -> Identification:
     system = problem.system
     names = [f.name for f in problem.free]
+    found, known = hold(problem, found)
     value = np.array([found["values"][f.index] for f in problem.free])
-    believed = uncertainty(found, problem.free, ready, [o.name in noise for o in system.info.outputs])
+    believed = uncertainty(found, problem.free, known, ready, [o.name in noise for o in system.info.outputs])
     nominal = [dataset.parameters[n].value if n in dataset.parameters else 0.0 for n in names]
     table = pd.DataFrame(
         {
@@ -186,7 +189,8 @@ def _result(
             "ci95_lower": believed.lower,
             "ci95_upper": believed.upper,
             "unit": [system.unit(n) for n in names],
-            "at_bound": found["at_bound"],
+            "at_bound": np.asarray(found["at_bound"]) & known,
+            "informed": known,
         },
         index=pd.Index(names, name="parameter"),
     )
@@ -207,7 +211,7 @@ def _result(
         converged=found["converged"],
         message=found["message"],
         num_iterations=found["iterations"],
-        problem=problem,
+        problem=problem.at(found["values"], found["initial"]),
     )
 
 

@@ -73,6 +73,11 @@ class Free:
         """d value / d x."""
         return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale
 
+    @property
+    def expected(self) -> float:
+        """The value that the prior has in its middle."""
+        return min(max(self.value(self.mean), self.lower), self.upper)
+
     def started(self, value: float) -> Free:
         """The same, started elsewhere (inside its bounds)."""
         return replace(self, start=min(max(value, self.lower), self.upper))

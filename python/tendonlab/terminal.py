@@ -144,7 +144,7 @@ def identification_text(fit: Identification) -> str:
         shown = [float(row[key]) for key in ("nominal", "value", "ci95_lower", "ci95_upper")]
         factor, unit = prefixed(shown, str(row["unit"]))
         nominal, value, lower, upper = (factor * each for each in shown)
-        doubt = "at its bound" if row["at_bound"] else ""
+        doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "not informed by these data: held"
         rows.append([str(name), number(nominal), number(value), span([lower, upper]), unit, doubt])
     state = "Converged" if fit.converged else f"NOT converged: {fit.message}"
     told = f"{state} after {fit.num_iterations} iterations, {len(fit.residuals)} experiments fitted together."

@@ -36,21 +36,25 @@ class Linear:
 
 
 def uncertainty(
-    found: dict[str, Any], free: Sequence[Free], experiments: Sequence[Prepared], scored: Sequence[bool]
+    found: dict[str, Any],
+    free: Sequence[Free],
+    informed: np.ndarray,
+    experiments: Sequence[Prepared],
+    scored: Sequence[bool],
 ) -> Uncertainty:
-    """Uncertainty of a fit `found` (see `_core.fit`).
+    """Uncertainty of a fit `found` (see `_core.fit`), in which `informed` parameters have data of their own.
 
     Covariance H^-1 (B + P) H^-1: H is the curvature with priors and without the nuisances, P the priors' part of it,
     B the sum of g g' over clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and
     with four experiments or more also the experiments; the larger sd counts, and none is below that of independent
     noise of the residuals' size. Intervals use Student's t with the number of clusters. Parameters at a bound count as
-    fixed for the others."""
+    fixed for the others; one that is not informed is what its prior says."""
     runs = [_linear(found, e, k, scored) for k, e in enumerate(experiments)]
     precision = np.array([0.0 if np.isinf(f.sd) else f.sd**-2.0 for f in free])
-    inside = ~np.asarray(found["at_bound"], dtype=bool)
+    inside = informed & ~np.asarray(found["at_bound"], dtype=bool)
     prior = np.diag(precision[inside])
     information = sum((r.sensitivity[:, inside].T @ r.sensitivity[:, inside] for r in runs), np.zeros_like(prior))
-    bread = np.linalg.pinv(information + prior, hermitian=True)
+    bread = _inverse(information + prior)
     rows = sum(len(r.residual) for r in runs)
     size = max(1.0, sum(float(r.residual @ r.residual) for r in runs) / max(1, rows - int(inside.sum())))
     covariances = [(bread @ (size * information + prior) @ bread, rows)]
@@ -59,7 +63,7 @@ def uncertainty(
     if len(runs) >= FEWEST_EXPERIMENTS:
         whole = [r.sensitivity[:, inside].T @ r.residual for r in runs]
         covariances.append((_sandwich(bread, prior, whole), len(whole)))
-    return _intervals(found, free, inside, covariances)
+    return _intervals(found, free, inside, informed, covariances)
 
 
 def _linear(found: dict[str, Any], experiment: Prepared, k: int, scored: Sequence[bool]) -> Linear:
@@ -70,6 +74,12 @@ def _linear(found: dict[str, Any], experiment: Prepared, k: int, scored: Sequenc
     time = np.asarray(experiment.core.time)
     stamps = [time[np.isfinite(m)] for m, s in zip(experiment.measured, scored, strict=True) if s]
     return Linear(np.asarray(found["residuals"][k]), sensitivity, np.concatenate(stamps))
+
+
+def _inverse(curvature: np.ndarray) -> np.ndarray:
+    """Scaled to a unit diagonal first, so that no parameter is lost beside one that is known far better."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(curvature), 1e-300))
+    return np.asarray(scale[:, None] * np.linalg.pinv(scale[:, None] * curvature * scale, hermitian=True) * scale)
 
 
 def _block_scores(run: Linear, inside: np.ndarray) -> list[np.ndarray]:
@@ -90,15 +100,19 @@ def _sandwich(bread: np.ndarray, prior: np.ndarray, scores: Sequence[np.ndarray]
 
 
 def _intervals(
-    found: dict[str, Any], free: Sequence[Free], inside: np.ndarray, covariances: Sequence[tuple[np.ndarray, int]]
+    found: dict[str, Any],
+    free: Sequence[Free],
+    inside: np.ndarray,
+    informed: np.ndarray,
+    covariances: Sequence[tuple[np.ndarray, int]],
 ) -> Uncertainty:
-    num = len(free)
-    sd, half = np.zeros(num), np.zeros(num)
+    sd = np.where(informed, 0.0, [f.sd for f in free])
+    half = stats.norm.ppf(0.975) * sd
     for covariance, clusters in covariances:
         one = np.sqrt(np.maximum(np.diag(covariance), 0.0))
         sd[inside] = np.maximum(sd[inside], one)
         half[inside] = np.maximum(half[inside], one * stats.t.ppf(0.975, max(1, clusters - 1)))
-    correlations = np.eye(num)
+    correlations = np.eye(len(free))
     last, _ = covariances[min(1, len(covariances) - 1)]
     scale = np.sqrt(np.maximum(np.diag(last), 1e-300))
     correlations[np.ix_(inside, inside)] = last / np.outer(scale, scale)

@@ -16,7 +16,9 @@ import pytest
 from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.identify import identify
+from tendonlab.priors import LOG_SD
 from tendonlab.system import System
+from tendonlab.terminal import identification_text
 
 TRUE = {"inertia": 0.55, "gravity_torque": 1.1, "coulomb": 0.26, "viscous": 0.48, "torque_constant": 1.0}
 NOMINAL = {"inertia": 0.5, "gravity_torque": 1.0, "coulomb": 0.3, "viscous": 0.4}
@@ -152,6 +154,50 @@ def test_interrupt_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     found = identify(rig(*slow), num_starts=30, progress=False, tolerance=1e-9)
     assert not found.converged
     assert found.message == "cancelled"
+
+
+def stated(*, seed: int = 4) -> tuple[Experiment, ...]:
+    """Runs that state their gravity torque, so that none depends on the simulator's."""
+    return tuple(measure(f"run-{k}", k, seed=seed, conditions={"gravity_torque": 1.1}) for k in range(4))
+
+
+@pytest.mark.parametrize("num_starts", [1, 3])
+@pytest.mark.parametrize("sd", [None, 0.25])
+def test_what_no_sample_depends_on_is_held_and_told(num_starts: int, sd: float | None) -> None:
+    found = identify(rig(*stated(), gravity_torque=NominalParameter(1.0, sd)), num_starts=num_starts, progress=False)
+    row = found.parameters.loc["gravity_torque"]
+    prior = LOG_SD if sd is None else sd
+    assert found.not_informed == ("gravity_torque",)
+    assert found.system.parameters["gravity_torque"] == row["value"] == 1.0
+    assert row["sd"] == pytest.approx(prior)
+    assert found.ci95("gravity_torque") == pytest.approx((1.0 - 1.96 * prior, 1.0 + 1.96 * prior), rel=1e-4)
+    others = identify(rig(*stated(), gravity_torque=NominalParameter(1.0, 0.0)), progress=False)
+    for name, value in others.values.items():
+        assert found.values[name] == pytest.approx(value, rel=1e-4)
+        assert found.parameters["sd"][name] == pytest.approx(others.parameters["sd"][name], rel=1e-3)
+
+
+def test_what_is_not_informed_is_told_wherever_results_are_shown() -> None:
+    found = identify(rig(*stated()), progress=False)
+    told = "not informed by these data: gravity_torque"
+    assert repr(found).endswith(f"; {told})")
+    assert "gravity_torque = " not in repr(found)
+    assert told in found._repr_html_()
+    assert found.to_dict()["parameters"]["gravity_torque"]["informed"] is False
+    assert found.to_dict()["parameters"]["inertia"]["informed"] is True
+    assert "not informed by these data: held" in identification_text(found)
+
+
+def test_a_nominal_value_at_its_bound_that_nothing_informs_is_not_at_its_bound() -> None:
+    found = identify(rig(*stated(), gravity_torque=NominalParameter(1.0, 0.25, 1.0, 2.0)), progress=False)
+    assert found.at_bound == ()
+    assert found.not_informed == ("gravity_torque",)
+    assert found.parameters["sd"]["gravity_torque"] == pytest.approx(0.25)
+
+
+def test_everything_is_informed_where_it_is_seen(fit: Any) -> None:
+    assert fit.not_informed == ()
+    assert fit.parameters["informed"].all()
 
 
 def test_results_come_as_plain_types_and_pictures(fit: Any) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.diagnose.case import Case
 from tendonlab.diagnose.floor import Floor, integrated_time, kept_samples
+from tendonlab.informed import informed
 from tendonlab.priors import Free, free_parameters
 from tendonlab.system import System
 
@@ -87,6 +88,12 @@ class Fitted:
         step = np.zeros(len(self.x))
         step[moving] = np.linalg.solve(known[np.ix_(moving, moving)], np.asarray(pull)[moving])
         return step
+
+    @cached_property
+    def not_informed(self) -> tuple[str, ...]:
+        """Free parameters that the training experiments say nothing about: they stay where their priors have them."""
+        seen = informed([b.jacobian for b in self.blocks], self.free)
+        return tuple(f.name for f, known in zip(self.free, seen, strict=True) if not known)
 
     @cached_property
     def mean_square(self) -> float:

@@ -31,9 +31,12 @@ def warnings(case: Case, floor: Floor, found: Search) -> list[str]:
             f"{len(case.train)} training experiment{'s' if len(case.train) > 1 else ''}: contiguous blocks of at least "
             "2 s stand for experiments where one is left out"
         )
-    bound = [f.name for f, at in zip(found.best.free, found.best.at_bound, strict=True) if at]
+    silent = found.best.not_informed
+    bound = [f.name for f, at in zip(found.best.free, found.best.at_bound, strict=True) if at and f.name not in silent]
     if bound:
         said.append(f"at a bound or the edge of its range: {', '.join(bound)}")
+    if silent:
+        said.append(f"not informed by these data and held at the nominal value: {', '.join(silent)}")
     if floor.repeated and floor.tau > UNSTEADY:
         said.append(f"friction differs by {floor.tau:.1%} from run to run: repeatability limits what can be said")
     for model in {m.added: m for m in (found.null, found.best)}.values():
@@ -75,4 +78,5 @@ def _parameter(case: Case, best: Fitted, name: str) -> dict[str, Any]:
         "ci95": list(interval),
         "unit": best.system.unit(name),
         "nominal": case.system.parameters.get(name),
+        "informed": name not in best.not_informed,
     }

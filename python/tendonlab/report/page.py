@@ -195,6 +195,8 @@ def _fitted(diagnosis: Diagnosis) -> list[dict[str, Any]]:
         factor, unit = numbers.prefixed(shown, str(of.get("unit") or ""))
         value, nominal, *ends = (None if number is None else factor * number for number in shown)
         interval = "" if None in ends or not ends else numbers.span([end for end in ends if end is not None], 4)
+        if not of.get("informed", True):
+            interval = "not informed by these data"
         texts = {"value": numbers.number(value, 4), "nominal": numbers.number(nominal, 4), "interval": interval}
         rows.append({"name": words.words(str(name)), "unit": unit, **texts})
     return rows
