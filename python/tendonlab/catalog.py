@@ -61,7 +61,8 @@ Named = TypeVar("Named", Parameter, Effect)
 @dataclass(frozen=True)
 class Signal:
     """An input or output; `axis` is the degree of freedom whose position it is, None for anything else. `between`: what
-    an input is between its samples, "hold", "linear" or "smooth"; `unless`: an input that takes its place if logged."""
+    an input is between its samples, "hold", "linear" or "smooth"; `unless`: an input that takes its place if logged;
+    `missed`: one that a rig may lack, but not where a measured output depends on it."""
 
     name: str
     dimension: str
@@ -71,14 +72,16 @@ class Signal:
     axis: int | None
     between: str
     unless: str | None
+    missed: bool
 
 
 @dataclass(frozen=True)
 class Port:
-    """Where a slot sits; ports of one element carry the same laws."""
+    """Where a slot sits; ports of one element carry the same laws. `load`: dimension of what it sees as its load."""
 
     name: str
     element: str
+    load: str
 
 
 @dataclass(frozen=True)
@@ -137,7 +140,7 @@ def system_info(kind: str) -> SystemInfo:
         ),
         elements=tuple(name for name, _ in raw["elements"]),
         element_axes={name: axis for name, axis in raw["elements"] if axis},
-        ports=tuple(Port(name, element) for name, element in raw["ports"]),
+        ports=tuple(Port(*of) for of in raw["ports"]),
         default_nominal_effects=tuple(raw["nominal"]),
         commanded=raw["commanded"],
         sampled=raw["sampled"],
@@ -182,6 +185,7 @@ def _signal(raw: dict[str, object]) -> Signal:
         axis=axis if isinstance(axis, int) and axis >= 0 else None,
         between=str(raw["between"]),
         unless=str(raw["unless"]) or None,
+        missed=bool(raw["missed"]),
     )
 
 

@@ -98,7 +98,8 @@ def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
     found: dict[str, Scale] = {}
     for i, port in enumerate(info.ports):
         velocity, position, load, force = ports[i]
-        seen = (max(_rms(load), _rms(force)), _rms(velocity), float(np.std(position)))
+        effort = max(_rms(load), _rms(force)) if port.load == "effort" else _rms(force)
+        seen = (effort, _rms(velocity), float(np.std(position)))
         known = found.get(port.element, Scale(0.0, 0.0, 0.0))
         most = (max(a, b) for a, b in zip(seen, (known.effort, known.flow, known.displacement), strict=True))
         found[port.element] = Scale(*most)

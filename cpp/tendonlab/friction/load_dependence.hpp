@@ -19,7 +19,7 @@ struct LoadDependence {
 
   static constexpr auto parameters() {
     return std::tuple{parameter(&LoadDependence::load_dependence, "load_dependence", Dimension::effort_per_load,
-                                Purpose::amplitude, 0.05, 0.0, 1.0, "dry friction per effort carried")};
+                                Purpose::amplitude, 0.05, 0.0, 1.0, "dry friction per load carried")};
   }
   template <class S>
   S level(const Sliding<S>& at) const {

@@ -53,7 +53,7 @@ def units(case: Case) -> dict[str, str]:
     found = {s.name: unit(s.dimension, axis) for s in info.outputs}
     for port in info.ports:
         own = info.element_axes.get(port.element, axis)
-        found |= {f"{port.name}_{quantity}": unit(d, own) for quantity, d in where.COORDINATES.items()}
+        found |= {f"{port.name}_{q}": unit(where.dimension(port, q), own) for q in where.COORDINATES}
     return found | {"time": "s"}
 
 

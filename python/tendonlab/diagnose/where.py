@@ -8,14 +8,19 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.catalog import unit
+from tendonlab.catalog import Port, unit
 from tendonlab.diagnose.case import Case
 from tendonlab.diagnose.floor import Floor
 from tendonlab.diagnose.heldout import Replayed, initial_state
 from tendonlab.diagnose.result import WhereMap
 
 NUM_BINS, NUM_SHIFTS = 8, 400
-COORDINATES = {"velocity": "flow", "position": "displacement", "load": "effort"}
+COORDINATES = ("velocity", "position", "load")
+
+
+def dimension(port: Port, quantity: str) -> str:
+    """Dimension of one of the `COORDINATES` at a port."""
+    return {"velocity": "flow", "position": "displacement", "load": port.load}[quantity]
 
 
 def signals(case: Case, of: Replayed, floor: Floor) -> list[dict[str, Any]]:
@@ -133,7 +138,7 @@ def maps(
                 x_unit=unit("flow", axis),
                 x_edges=x_edges,
                 y=f"{port.name}_{quantity}",
-                y_unit=unit(COORDINATES[quantity], axis),
+                y_unit=unit(dimension(port, quantity), axis),
                 y_edges=y_edges,
                 refitted=_cells(x, y, before, x_edges, y_edges),
                 with_effect=_cells(x, y, after, x_edges, y_edges),
