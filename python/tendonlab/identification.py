@@ -67,7 +67,8 @@ class Identification:
     at_bound, informed. Where no measured sample depends on a parameter, it is not informed: held at its nominal value,
     with the sd and interval of its prior. `correlations`: of the free parameters' coordinates. `residuals`: for each
     experiment a frame by time, s, with a column an output, in noise sd. `initial`: fitted initial states by experiment.
-    `system`: the simulator with the fitted values. `cost`: half the sum of squared residuals, priors included."""
+    `system`: the simulator with the fitted values. `cost`: half the sum of squared residuals, priors included.
+    `warnings`: those of the dataset."""
 
     system: System
     parameters: pd.DataFrame
@@ -80,6 +81,7 @@ class Identification:
     converged: bool
     message: str = field(default="", repr=False)
     num_iterations: int = 0
+    warnings: tuple[str, ...] = field(default=(), repr=False)
     problem: Problem = field(repr=False)
 
     @property
@@ -165,6 +167,7 @@ class Identification:
             "correlations": self.correlations.to_dict(),
             "initial": self.initial,
             "noise_sd": self.noise_sd,
+            "warnings": list(self.warnings),
         }
 
     def __repr__(self) -> str:
@@ -176,7 +179,8 @@ class Identification:
     def _repr_html_(self) -> str:
         state = "converged" if self.converged else f"<b>not converged</b>: {escape(self.message)}"
         table = self.parameters.to_html(float_format=lambda v: f"{v:.4g}")
-        return f"<p>{state}{escape(self._silence('; '))}</p>{table}"
+        notes = "".join(f"<li>{escape(warning)}</li>" for warning in self.warnings)
+        return f"<p>{state}{escape(self._silence('; '))}</p>{table}<ul>{notes}</ul>"
 
     def _silence(self, before: str) -> str:
         held = ", ".join(self.not_informed)

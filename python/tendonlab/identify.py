@@ -211,6 +211,7 @@ def _result(
         converged=found["converged"],
         message=found["message"],
         num_iterations=found["iterations"],
+        warnings=dataset.warnings,
         problem=problem.at(found["values"], found["initial"]),
     )
 

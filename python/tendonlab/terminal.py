@@ -148,7 +148,8 @@ def identification_text(fit: Identification) -> str:
         rows.append([str(name), number(nominal), number(value), span([lower, upper]), unit, doubt])
     state = "Converged" if fit.converged else f"NOT converged: {fit.message}"
     told = f"{state} after {fit.num_iterations} iterations, {len(fit.residuals)} experiments fitted together."
-    parts = [wrapped(told), table(rows, right=(1, 2)), _items("Hard to tell apart", _correlated(fit))]
+    tied = _items("Hard to tell apart", _correlated(fit))
+    parts = [wrapped(told), table(rows, right=(1, 2)), tied, _items("Notes", fit.warnings)]
     return "\n\n".join(part for part in parts if part)
 
 

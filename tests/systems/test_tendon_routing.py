@@ -99,27 +99,83 @@ def test_a_stiff_bristle_is_dry_friction_and_a_soft_one_comes_late() -> None:
     assert np.max(np.abs(soft - steady)) > 0.01
 
 
-def test_what_a_dataset_does_not_name_is_not_there(tmp_path: Path) -> None:
-    """Cables that cross no other joint, one of them with a loss: pulleys and reducers are all that has to be named."""
-    named = {f"radius_{i}_{i}": 0.05 for i in range(1, 5)} | {f"motor_radius_{i}": 0.01 for i in range(1, 5)}
-    named |= {f"reducer_{what}_{i}": 1.0 for what in ("ratio", "efficiency") for i in range(1, 5)}
-    named |= {"constant_loss_1_0": 2.0}
+PLAIN = {f"radius_{i}_{i}": 0.05 for i in range(1, 5)} | {f"motor_radius_{i}": 0.01 for i in range(1, 5)}
+PLAIN |= {f"reducer_{what}_{i}": 1.0 for what in ("ratio", "efficiency") for i in range(1, 5)}
+SPEED, TORQUE = ("v", "rad/s"), ("c", "N*m")
+
+
+def write(folder: Path, signals: dict[str, tuple[str, str]], **named: float) -> Path:
+    """A rig with cables that cross no other joint; `named` adds to its parameters. `signals`: column and unit."""
     time = np.linspace(0.0, 4.0, 81)
     speed = np.cos(2 * time)
     frame = pd.DataFrame({"t": time, "v": speed, "c": 0.1 * np.sin(time) + 0.02 * np.sign(speed)})
     lines = ['format = "tendonlab-dataset/1"', 'name = "two"', "[system]", 'kind = "tendon_routing"']
-    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in named.items())]
-    lines += ["[signals]", 'motor_velocity_1 = { column = "v", unit = "rad/s" }']
-    lines += ['motor_torque_1 = { column = "c", unit = "N*m" }']
+    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in {**PLAIN, **named}.items())]
+    lines += ["[signals]", *(f'{name} = {{ column = "{c}", unit = "{u}" }}' for name, (c, u) in signals.items())]
     for k in range(4):
-        frame.to_csv(tmp_path / f"{k}.csv", index=False)
+        frame.to_csv(folder / f"{k}.csv", index=False)
         lines += ["[[experiments]]", f'name = "{k}"', f'file = "{k}.csv"']
-    (tmp_path / "dataset.toml").write_text("\n".join(lines), encoding="utf-8")
-    rig = tl.load(tmp_path)
+    (folder / "dataset.toml").write_text("\n".join(lines), encoding="utf-8")
+    return folder
+
+
+def test_what_a_dataset_does_not_name_is_not_there(tmp_path: Path) -> None:
+    """One of the cables with a loss: pulleys and reducers are all else that has to be named."""
+    rig = tl.load(write(tmp_path, {"motor_velocity_1": SPEED, "motor_torque_1": TORQUE}, constant_loss_1_0=2.0))
     assert rig.parameters["viscous_loss_4_3"].value == 0.0
     assert rig.parameters["radius_2_1"].sd == 0.0
     found = rig.system().simulate(rig["0"]).outputs
-    np.testing.assert_allclose(found["motor_torque_1"], 0.02 * np.sign(speed), rtol=1e-12)
+    np.testing.assert_allclose(found["motor_torque_1"], 0.02 * np.sign(rig["0"].data["motor_velocity_1"]), rtol=1e-12)
+
+
+def silences(rig: tl.Dataset) -> list[str]:
+    return [warning for warning in rig.warnings if "not logged" in warning]
+
+
+ONE = {"motor_velocity_1": SPEED, "external_torque_1": TORQUE, "motor_torque_1": TORQUE}
+TWO = {"motor_velocity_2": SPEED, "external_torque_2": TORQUE, "motor_torque_2": TORQUE}
+
+
+def test_an_output_that_no_logged_input_moves_is_refused(tmp_path: Path) -> None:
+    told = (
+        r"dataset.toml, key signals.motor_torque_2: depends on no input but motor_velocity_2, external_torque_2, not "
+        r"logged; expected them as signals \(zeros where they are 0\)"
+    )
+    with pytest.raises(tl.DatasetError, match=told):
+        tl.load(write(tmp_path, {**ONE, "motor_torque_2": TORQUE}))
+
+
+@pytest.mark.parametrize("missing", ["motor_velocity_2", "external_torque_2"])
+def test_an_input_that_counts_as_zero_is_told_where_an_output_depends_on_it(tmp_path: Path, missing: str) -> None:
+    rig = tl.load(write(tmp_path, {**ONE, **{name: of for name, of in TWO.items() if name != missing}}))
+    assert silences(rig) == [
+        "dataset.toml, key signals: not logged and counted as 0, which bears on motor_torque_2: "
+        f"{missing}; expected them as signals (zeros where they are 0)"
+    ]
+
+
+def test_a_cable_that_crosses_the_joint_counts_and_one_that_does_not_does_not(tmp_path: Path) -> None:
+    (warning,) = silences(tl.load(write(tmp_path, ONE, radius_2_1=0.03)))
+    assert "motor_torque_1" in warning
+    assert "motor_velocity_2, external_torque_2;" in warning
+
+
+def test_nothing_is_told_where_all_that_counts_was_logged(tmp_path: Path) -> None:
+    assert silences(tl.load(write(tmp_path, {**ONE, **TWO}))) == []
+
+
+def test_a_fit_says_so_and_holds_what_belongs_to_joints_that_are_not_there(tmp_path: Path) -> None:
+    alone = {"motor_velocity_1": SPEED, "motor_torque_1": TORQUE}
+    found = tl.identify(tl.load(write(tmp_path, alone, constant_loss_1_0=2.0)), progress=False)
+    assert any("external_torque_1" in warning for warning in found.warnings)
+    there = {"radius_1_1", "motor_radius_1", "constant_loss_1_0"}
+    assert set(found.parameters.index) - set(found.not_informed) <= there
+    assert {"motor_radius_2", "radius_2_2", "radius_4_4"} <= set(found.not_informed)
+    held = found.parameters.loc[list(found.not_informed)]
+    np.testing.assert_allclose(held["value"], held["nominal"])
+    prior = {f.name: f.sd * f.slope(f.mean) for f in found.problem.free}
+    np.testing.assert_allclose(held["sd"], [prior[name] for name in held.index])
+    assert (held["sd"] > 0).all()
 
 
 def test_a_driven_pulley_without_radius_is_refused() -> None:

@@ -1,10 +1,12 @@
 """`load`: a folder with dataset.toml and its files to a checked Dataset."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
 from tendonlab import catalog
+from tendonlab.data.absent import absent_inputs
 from tendonlab.data.controller import check_controller, read_controller
 from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
 from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
@@ -50,7 +52,7 @@ def load(path: str | PathLike[str]) -> Dataset:
         *_doubts(experiments, signals.values(), info=info),
         *_split_notes(experiments, given=split_is_given(top)),
     ]
-    return Dataset(
+    dataset = Dataset(
         name=name,
         description=description,
         kind=info.kind,
@@ -63,6 +65,7 @@ def load(path: str | PathLike[str]) -> Dataset:
         path=folder,
         warnings=tuple(warnings),
     )
+    return replace(dataset, warnings=(*warnings, *absent_inputs(dataset)))
 
 
 def _require_motion(
