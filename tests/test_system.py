@@ -1,11 +1,15 @@
 """A simulator and what it gives: what is refused and with which words, and the forms in which it is shown."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
 import tendonlab as tl
+from tendonlab.data import Controller
 
 VALUES = {"inertia": 0.02, "gravity_torque": 0.5, "torque_constant": 1.0, "coulomb": 0.05, "viscous": 0.03}
 SIM = tl.System(kind="rigid_joint", parameters=VALUES, effects=("joint:coulomb", "joint:viscous"))
@@ -36,6 +40,33 @@ def test_a_simulator_that_cannot_be_is_refused(changes: dict[str, object], told:
     given = {"kind": SIM.kind, "parameters": VALUES, "effects": SIM.effects} | changes
     with pytest.raises(tl.ParameterError, match=told):
         tl.System(**given)
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "told"),
+    [
+        ("sweep-1", tl.ParameterError, "experiment is a str: expected an experiment of a dataset, or a frame"),
+        (TIME, tl.ParameterError, "experiment is a ndarray"),
+        (PUSHED.reset_index(), tl.DatasetError, "column 't' stands beside the index: expected it as the index"),
+        (PUSHED.set_index(pd.to_datetime(TIME, unit="s")), tl.DatasetError, "index of the frame is of type datetime64"),
+        (pd.concat([PUSHED, PUSHED], axis=1), tl.DatasetError, "column 'motor_torque' stands there 2 times"),
+        (PUSHED.assign(motor_torque="fast"), tl.DatasetError, "given: motor_torque is of type .*; expected numbers"),
+        (PUSHED.replace(PUSHED.iloc[3, 0], np.nan), tl.DatasetError, "motor_torque = nan at t = 0.03 s"),
+        (PUSHED.iloc[:1], tl.ParameterError, "experiment with 1 samples: expected at least 2"),
+    ],
+    ids=["a name", "an array", "time as a column", "dates", "a column twice", "text", "a gap", "one sample"],
+)
+def test_what_cannot_be_simulated_is_refused(given: Any, error: type[Exception], told: str) -> None:
+    with pytest.raises(error, match=told):
+        SIM.simulate(given)
+
+
+def test_a_reference_with_a_gap_is_refused() -> None:
+    closed = replace(SIM, controller=Controller("pd", 3.0, 0.1, "joint_angle", "reference_angle"))
+    frame = PUSHED.assign(reference_angle=0.1 * np.sin(6.0 * TIME))
+    frame.iloc[7, 1] = np.nan
+    with pytest.raises(tl.DatasetError, match="given: reference_angle = nan at t = 0"):
+        closed.simulate(frame)
 
 
 def test_changes_leave_the_original_as_it_was() -> None:
@@ -70,6 +101,8 @@ def test_a_trajectory_gives_its_outputs_and_draws_them() -> None:
     for ask in (lambda: run["joint_angel"], lambda: run.plot(Figure().subplots(), signal="joint_angel")):
         with pytest.raises(tl.ParameterError, match="'joint_angel' is no output; did you mean 'joint_angle'"):
             ask()
+    with pytest.raises(tl.ParameterError, match="expected one name; `outputs` is the frame of all"):
+        run[["joint_angle"]]  # type: ignore[index]
 
 
 def test_forms_for_a_notebook_are_short_and_escaped() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from html import escape
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -109,9 +110,14 @@ class Identification:
         """Profile likelihood of one parameter: columns value, cost (over the optimum's, in nats) and converged, over
         `reach` standard deviations to either side within bounds, all other parameters refitted at each point.
 
-        Raises ParameterError for a parameter that was not fitted. The nats count the stated noise as independent;
+        Raises ParameterError for a parameter that was not fitted, fewer than 2 points or a reach that is no positive
+        number. The nats count the stated noise as independent;
         `sd` and `ci95` do not."""
         self._require(name)
+        if not isinstance(num_points, Integral) or num_points < 2:
+            raise ParameterError(f"num_points = {num_points!r}: expected at least 2, a whole number")
+        if not 0 < reach < np.inf:
+            raise ParameterError(f"reach = {reach}: expected a positive number of standard deviations")
         free = next(f for f in self.problem.free if f.name == name)
         value, sd = self.values[name], float(self.parameters["sd"][name])
         centre, width = free.coordinate(value), sd / free.slope(free.coordinate(value))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from tendonlab import _core, priors
+from tendonlab.data import require_dataset
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identification import Identification, Problem
 from tendonlab.informed import hold
@@ -47,11 +49,13 @@ def identify(
     is held at its nominal value and told (`not_informed`). `experiments`: names, instead of the training
     ones. `num_starts`: the first from the nominal values, the others drawn from the priors with `seed`; the best is
     kept. `tolerance`: relative error of a step of the simulation. Ctrl-C keeps the best so far, `converged` False.
-    Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect,
-    NumericalError if no start can be simulated. Source: S2 sec. 4."""
-    if num_starts < 1:
-        raise ParameterError(f"num_starts = {num_starts}: expected at least 1")
-    chosen = dataset.train if experiments is None else tuple(dataset[name] for name in experiments)
+    Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect or a
+    name that stands twice, NumericalError if no start can be simulated. Source: S2 sec. 4."""
+    require_dataset(dataset)
+    if not isinstance(num_starts, Integral) or num_starts < 1:
+        raise ParameterError(f"num_starts = {num_starts!r}: expected at least 1, a whole number")
+    effects = _names("effects", effects)
+    chosen = dataset.train if experiments is None else tuple(dataset[n] for n in _names("experiments", experiments))
     if not chosen:
         raise DatasetError(f"{dataset.name}: no training experiment; expected at least one with split = train")
     base = dataset.system() if system is None else system
@@ -61,6 +65,15 @@ def identify(
     problem = pose(dataset, base, chosen, ready, effects=effects, noise=noise, tolerance=tolerance)
     found, best = _solve(_starts(problem, num_starts, np.random.default_rng(seed)), progress=progress)
     return _result(dataset, best, found, ready, noise)
+
+
+def _names(what: str, given: Sequence[str]) -> tuple[str, ...]:
+    if isinstance(given, str):
+        raise ParameterError(f"{what} = {given!r}: expected a list, such as [{given!r}]")
+    twice = [name for k, name in enumerate(given) if name in given[:k]]
+    if twice:
+        raise ParameterError(f"{what}: {twice[0]!r} stands there twice; expected each name once")
+    return tuple(given)
 
 
 def noise_sd(dataset: Dataset, system: System, experiments: Sequence[Prepared]) -> dict[str, float]:

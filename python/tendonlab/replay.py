@@ -70,7 +70,10 @@ def choose(dataset: Dataset, system: System) -> Replay:
     if first is None or first not in dataset.outputs or command not in dataset.inputs:
         return Replay("free")
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
-    rates = [2 * np.pi * _frequency_below(e.time, e.data[first].to_numpy()) for e in dataset.train]
+    moved = [(e.time, e.data[first].to_numpy(dtype=float)) for e in dataset.train if first in e.data.columns]
+    rates = [2 * np.pi * _frequency_below(time, values) for time, values in moved if np.isfinite(values).any()]
+    if not rates:
+        return Replay("free")
     omega = 0.5 * float(np.median(rates))
     return Replay("injection", float(inertia * omega**2), float(1.4 * inertia * omega), first)
 
@@ -105,12 +108,9 @@ def simulate(
     system: System, experiment: Experiment | pd.DataFrame, *, tolerance: float, ports: bool, replay: str
 ) -> Trajectory:
     """Simulate one experiment; see System.simulate."""
-    from tendonlab.data import Experiment
-
     if replay not in KINDS:
         raise ParameterError(f"replay = {replay!r}: expected one of {', '.join(KINDS)}")
-    if isinstance(experiment, pd.DataFrame):
-        experiment = Experiment(name="given", data=experiment)
+    experiment = as_experiment(experiment)
     controller = system.controller
     known = controller is not None and controller.reference in experiment.data.columns
     if replay == "controller" and not known:
@@ -132,6 +132,31 @@ def simulate(
         num_attempts=run["attempts"],
         num_events=run["events"],
     )
+
+
+def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
+    """An experiment as it is, or one with the signals of a frame.
+
+    Raises ParameterError for anything else, DatasetError where the index is no time in s or a column stands twice."""
+    from tendonlab.data import Experiment
+
+    if isinstance(given, Experiment):
+        return given
+    if not isinstance(given, pd.DataFrame):
+        told = "expected an experiment of a dataset, or a frame indexed by time, s"
+        raise ParameterError(f"experiment is a {type(given).__name__}: {told}")
+    return Experiment(name="given", data=_by_time(given))
+
+
+def _by_time(frame: pd.DataFrame) -> pd.DataFrame:
+    if frame.index.dtype.kind not in "iuf":
+        raise DatasetError(f"index of the frame is of type {frame.index.dtype}: expected times, s, as numbers")
+    if "t" in frame.columns:
+        raise DatasetError("column 't' stands beside the index: expected it as the index, as set_index('t') gives it")
+    twice = frame.columns[frame.columns.duplicated()]
+    if len(twice):
+        raise DatasetError(f"column {twice[0]!r} stands there {list(frame.columns).count(twice[0])} times")
+    return frame
 
 
 def _there(system: System, experiment: Experiment) -> System:
@@ -166,8 +191,12 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
 
 
 def _finite(experiment: Experiment, name: str) -> np.ndarray:
-    """The samples of an input, all of them numbers, at instants that increase."""
-    values, time = experiment.data[name].to_numpy(dtype=float), experiment.time
+    """The samples of an input or reference, all of them numbers, at instants that increase."""
+    time, column = experiment.time, experiment.data[name]
+    try:
+        values = column.to_numpy(dtype=float)
+    except (TypeError, ValueError) as error:
+        raise DatasetError(f"{experiment.name}: {name} is of type {column.dtype}; expected numbers") from error
     if len(time) > 1 and not np.all(np.diff(time) > 0):
         k = int(np.argmin(np.diff(time) > 0)) + 1
         raise DatasetError(f"{experiment.name}: time[{k}] = {time[k]} s after {time[k - 1]} s; expected it to increase")
@@ -184,6 +213,9 @@ def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.n
     names = [s.name for s in system.info.outputs]
     if replay.kind == "injection":
         c = names.index(str(replay.output))
+        if np.isfinite(measured[c]).sum() < 2:
+            told = "the injection replay needs it in every experiment"
+            raise DatasetError(f"{experiment.name}: {names[c]} has no two measured samples; {told}")
         return _core.Loop(
             kind="injection",
             axis=system.info.outputs[c].axis or 0,
@@ -203,16 +235,16 @@ def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.n
 
 
 def _controller_loop(experiment: Experiment, system: System, controller: Controller) -> _core.Loop:
-    data, time, held = experiment.data, experiment.time, experiment.holds
+    time, held = experiment.time, experiment.holds
     c = [s.name for s in system.info.outputs].index(controller.measured)
     cascade = controller.kind == "cascade"
-    reference = data[controller.reference].to_numpy(dtype=float)
+    reference = _finite(experiment, controller.reference)
     differentiated = not cascade and controller.derivative_on == "error" and controller.sample_time == 0.0
     # A reference that is differentiated needs a slope without jumps; else it goes between samples as the contract says.
     make = hold if held.get(controller.reference, False) else smooth if differentiated else linear
     disturbance = _core.Signal()
     if controller.disturbance is not None:
-        values = data[controller.disturbance].to_numpy(dtype=float)
+        values = _finite(experiment, controller.disturbance)
         disturbance = hold(time, values) if held.get(controller.disturbance, True) else linear(time, values)
     return _core.Loop(
         kind="controller",

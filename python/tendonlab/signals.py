@@ -63,7 +63,7 @@ def scales_of(time: np.ndarray, positions: np.ndarray) -> tuple[float, float]:
         if kept.sum() < 3 or np.ptp(row[kept]) == 0:
             continue
         t, y = time[kept], row[kept]
-        width = max(1, round(0.02 * len(t) / (t[-1] - t[0])))
+        width = max(1, min(round(0.02 * len(t) / (t[-1] - t[0])), len(t) // 3))
         even = np.convolve(y, np.ones(width) / width, mode="valid")
         travel.append(float(np.std(y)))
         speed.append(float(np.std(np.gradient(even, t[: len(even)]))) if len(even) > 2 else travel[-1])

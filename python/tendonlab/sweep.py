@@ -15,6 +15,7 @@ from tqdm import tqdm
 from tendonlab.catalog import unit
 from tendonlab.data import Experiment
 from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.replay import as_experiment
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,15 +42,17 @@ def sweep(
     `tolerance`: relative error of a step. `executor`: any concurrent.futures executor, which stays open; without one,
     a thread a processor (the core releases the interpreter).
     Raises ParameterError, before anything is simulated, for an unknown parameter, one that the experiment's conditions
-    fix, a value outside its bounds or an axis without values; DatasetError for a missing input; NumericalError where
-    every point failed."""
+    fix, a value outside its bounds or given twice, or an axis without values; DatasetError for a missing input;
+    NumericalError where every point failed."""
+    if not isinstance(grid, Mapping):
+        raise ParameterError(f"grid is a {type(grid).__name__}: expected a mapping of parameter names to values")
     axes = {name: _axis(name, values) for name, values in grid.items()}
+    time = as_experiment(experiment).time
     points = [
         dict(zip(axes, values, strict=True)) for values in itertools.product(*(v.tolist() for v in axes.values()))
     ]
     refuse_conditions(experiment, axes)
     systems = [system.with_parameters(point) for point in points]
-    time = (experiment.data if isinstance(experiment, Experiment) else experiment).index.to_numpy(dtype=float)
     outputs = np.full((len(points), len(system.info.outputs), len(time)), np.nan)
     messages = ["interrupted"] * len(points)
     with _threads() if executor is None else _borrowed(executor) as pool:
@@ -77,9 +80,15 @@ def refuse_conditions(experiment: Experiment | pd.DataFrame, names: Iterable[str
 
 
 def _axis(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
-    axis = np.asarray(values, dtype=float)
+    try:
+        axis = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{name} = {values!r}: expected a list of numbers") from error
     if axis.ndim != 1 or axis.size == 0:
         raise ParameterError(f"{name} has shape {axis.shape}: expected a list of values, shape (n,), n > 0")
+    found, times = np.unique(axis, return_counts=True)
+    if (times > 1).any():
+        raise ParameterError(f"{name}: {found[times > 1][0]:g} stands there twice; expected each value once")
     return axis
 
 

@@ -42,8 +42,11 @@ class Trajectory:
         return ax
 
     def _known(self, signal: str) -> str:
-        if signal not in self.outputs.columns:
-            raise ParameterError(f"{signal!r} is no output; {nearest(signal, [str(c) for c in self.outputs.columns])}")
+        known = [str(c) for c in self.outputs.columns]
+        if not isinstance(signal, str):
+            raise ParameterError(f"{signal!r} is no output: expected one name; `outputs` is the frame of all")
+        if signal not in known:
+            raise ParameterError(f"{signal!r} is no output; {nearest(signal, known)}")
         return signal
 
     def to_dict(self) -> dict[str, Any]:

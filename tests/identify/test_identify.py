@@ -210,6 +210,19 @@ def test_results_come_as_plain_types_and_pictures(fit: Any) -> None:
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "residual (noise sd)")
 
 
+def test_an_experiment_that_did_not_measure_the_motor_is_named() -> None:
+    runs = [measure(f"run-{k}", k, seed=1) for k in range(4)]
+    blind = replace(runs[2], data=runs[2].data.assign(joint_angle=np.nan))
+    with pytest.raises(DatasetError, match="run-2: joint_angle has no two measured samples"):
+        identify(rig(*runs[:2], blind, runs[3]), progress=False)
+
+
+def test_records_of_a_few_samples_are_fitted_with_what_they_say() -> None:
+    runs = [measure(f"run-{k}", k, seed=1) for k in range(4)]
+    found = identify(rig(*(replace(run, data=run.data.iloc[:3]) for run in runs)), progress=False)
+    assert (found.parameters["sd"] > 0).all()
+
+
 def test_what_cannot_be_identified_is_told(fit: Any) -> None:
     with pytest.raises(ParameterError, match="joint:stribek"):
         identify(rig(), effects=["joint:stribek"], progress=False)
@@ -219,5 +232,18 @@ def test_what_cannot_be_identified_is_told(fit: Any) -> None:
         identify(rig(), experiments=["nine"], progress=False)
     with pytest.raises(ParameterError, match="num_starts = 0: expected at least 1"):
         identify(rig(), num_starts=0, progress=False)
+    for given, told in (
+        ({"num_starts": 1.5}, "num_starts = 1.5: expected at least 1"),
+        ({"effects": "joint:stribeck"}, r"effects = 'joint:stribeck': expected a list, such as \['joint:stribeck'\]"),
+        ({"experiments": "run-1"}, "experiments = 'run-1': expected a list"),
+        ({"experiments": ["run-1", "run-2", "run-1"]}, "experiments: 'run-1' stands there twice"),
+    ):
+        with pytest.raises(ParameterError, match=told):
+            identify(rig(), progress=False, **given)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match="dataset = 'rig-42': expected a Dataset, as load"):
+        identify("rig-42", progress=False)  # type: ignore[arg-type]
+    for given, told in (({"num_points": 1}, "num_points = 1"), ({"reach": 0.0}, "reach = 0.0: expected a positive")):
+        with pytest.raises(ParameterError, match=told):
+            fit.profile("inertia", **given)
     with pytest.raises(ParameterError, match="'torque_constant' was not fitted"):
         fit.ci95("torque_constant")
