@@ -47,23 +47,40 @@ def uncertainty(
     Covariance H^-1 (B + P) H^-1: H is the curvature with priors and without the nuisances, P the priors' part of it,
     B the sum of g g' over clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and
     with four experiments or more also the experiments; the larger sd counts, and none is below that of independent
-    noise of the residuals' size. Intervals use Student's t with the number of clusters. Parameters at a bound count as
-    fixed for the others; one that is not informed is what its prior says."""
+    noise of the residuals' size. Intervals use Student's t with the number of clusters. A parameter at a bound
+    counts as fixed for the others; its own sd is what it would be without the bound, where its interval ends. One that
+    is not informed is what its prior says."""
     runs = [_linear(found, e, k, scored) for k, e in enumerate(experiments)]
     precision = np.array([0.0 if np.isinf(f.sd) else f.sd**-2.0 for f in free])
     inside = informed & ~np.asarray(found["at_bound"], dtype=bool)
+    covariances = _covariances(runs, precision, inside)
+    sd = np.array([f.sd for f in free])
+    half = stats.norm.ppf(0.975) * sd
+    if (informed & ~inside).any():
+        sd[informed], half[informed] = _spread(_covariances(runs, precision, informed))
+    sd[inside], half[inside] = _spread(covariances)
+    correlations = np.eye(len(free))
+    last, _ = covariances[min(1, len(covariances) - 1)]
+    scale = np.sqrt(np.maximum(np.diag(last), 1e-300))
+    correlations[np.ix_(inside, inside)] = last / np.outer(scale, scale)
+    return _intervals(found, free, sd, half, correlations)
+
+
+def _covariances(runs: Sequence[Linear], precision: np.ndarray, inside: np.ndarray) -> list[tuple[np.ndarray, int]]:
+    """Of the coordinates `inside`, others fixed: for independent residuals, blocks, and experiments where there are
+    enough of them; each with its number of clusters."""
     prior = np.diag(precision[inside])
     information = sum((r.sensitivity[:, inside].T @ r.sensitivity[:, inside] for r in runs), np.zeros_like(prior))
     bread = _inverse(information + prior)
     rows = sum(len(r.residual) for r in runs)
     size = max(1.0, sum(float(r.residual @ r.residual) for r in runs) / max(1, rows - int(inside.sum())))
-    covariances = [(bread @ (size * information + prior) @ bread, rows)]
+    found = [(bread @ (size * information + prior) @ bread, rows)]
     blocks = [g for r in runs for g in _block_scores(r, inside)]
-    covariances.append((_sandwich(bread, prior, blocks), len(blocks)))
+    found.append((_sandwich(bread, prior, blocks), len(blocks)))
     if len(runs) >= FEWEST_EXPERIMENTS:
         whole = [r.sensitivity[:, inside].T @ r.residual for r in runs]
-        covariances.append((_sandwich(bread, prior, whole), len(whole)))
-    return _intervals(found, free, inside, informed, covariances)
+        found.append((_sandwich(bread, prior, whole), len(whole)))
+    return found
 
 
 def _linear(found: dict[str, Any], experiment: Prepared, k: int, scored: Sequence[bool]) -> Linear:
@@ -99,23 +116,17 @@ def _sandwich(bread: np.ndarray, prior: np.ndarray, scores: Sequence[np.ndarray]
     return np.asarray(bread @ (meat + prior) @ bread)
 
 
+def _spread(covariances: Sequence[tuple[np.ndarray, int]]) -> tuple[np.ndarray, np.ndarray]:
+    """Sd and half width of the 95 % interval of each coordinate: the largest that any of the covariances gives."""
+    sd = [np.sqrt(np.maximum(np.diag(covariance), 0.0)) for covariance, _ in covariances]
+    half = [one * stats.t.ppf(0.975, max(1, c - 1)) for one, (_, c) in zip(sd, covariances, strict=True)]
+    return np.max(sd, axis=0), np.max(half, axis=0)
+
+
 def _intervals(
-    found: dict[str, Any],
-    free: Sequence[Free],
-    inside: np.ndarray,
-    informed: np.ndarray,
-    covariances: Sequence[tuple[np.ndarray, int]],
+    found: dict[str, Any], free: Sequence[Free], sd: np.ndarray, half: np.ndarray, correlations: np.ndarray
 ) -> Uncertainty:
-    sd = np.where(informed, 0.0, [f.sd for f in free])
-    half = stats.norm.ppf(0.975) * sd
-    for covariance, clusters in covariances:
-        one = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        sd[inside] = np.maximum(sd[inside], one)
-        half[inside] = np.maximum(half[inside], one * stats.t.ppf(0.975, max(1, clusters - 1)))
-    correlations = np.eye(len(free))
-    last, _ = covariances[min(1, len(covariances) - 1)]
-    scale = np.sqrt(np.maximum(np.diag(last), 1e-300))
-    correlations[np.ix_(inside, inside)] = last / np.outer(scale, scale)
+    """The same for the values: sd and half intervals of the coordinates through their slopes, within bounds."""
     x = np.array(found["x"])
     bounded = [sorted((f.value(a - h), f.value(a + h))) for f, a, h in zip(free, x, half, strict=True)]
     slope = np.array([abs(f.slope(a)) for f, a in zip(free, x, strict=True)])

@@ -61,6 +61,30 @@ def test_bounds_hold_and_are_told(joint: Any) -> None:
     assert found["values"][joint.index("coulomb")] == pytest.approx(0.4, rel=1e-12)
 
 
+@pytest.mark.parametrize("bound", [0.4, 0.3])
+def test_along_a_bound_the_others_are_fitted_to_the_end(joint: Any, bound: float) -> None:
+    """At a bound of 0.3 the fit starts. Either way it ends where it ends with that value known."""
+    tasks = joint.tasks(inertia=0.6, gravity_torque=1.2, coulomb=0.6, viscous=0.5)
+    others = joint.free("inertia", "gravity_torque", "viscous")
+    found = joint.fit(tasks, [*joint.free("coulomb", upper=bound), *others])
+    joint = replace(joint, system=joint.system.with_parameters({"coulomb": bound}))
+    known = joint.fit(tasks, others)
+    assert found["converged"], found["message"]
+    assert found["at_bound"] == [True, False, False, False]
+    assert found["cost"] == pytest.approx(known["cost"], abs=0.1)
+    np.testing.assert_allclose(found["x"][1:], known["x"], atol=1e-3)
+
+
+def test_a_start_at_a_bound_that_the_data_leave_is_left(joint: Any) -> None:
+    tasks = joint.tasks(coulomb=0.25, viscous=0.5)
+    free = [*joint.free("coulomb", upper=0.3), *joint.free("viscous", lower=0.4)]
+    found = joint.fit(tasks, free)
+    assert found["converged"], found["message"]
+    assert found["at_bound"] == [False, False]
+    assert found["values"][joint.index("coulomb")] == pytest.approx(0.25, rel=0.05)
+    assert found["values"][joint.index("viscous")] == pytest.approx(0.5, rel=0.05)
+
+
 def test_a_prior_weighs_against_the_data_as_its_sd_says(joint: Any) -> None:
     """One parameter near its optimum: the posterior mean is the weighted mean of prior and data."""
     tasks = joint.tasks(viscous=0.42)

@@ -101,6 +101,25 @@ def test_stated_bounds_are_kept_and_told() -> None:
     found = identify(rig(coulomb=NominalParameter(0.3, None, 0.28, 0.4)), progress=False)
     assert found.at_bound == ("coulomb",)
     assert found.values["coulomb"] == pytest.approx(0.28)
+    assert found.converged, found.message
+    held = identify(rig(coulomb=NominalParameter(0.28, 0.0)), progress=False)
+    for name, value in held.values.items():
+        assert found.values[name] == pytest.approx(value, abs=0.02 * held.parameters["sd"][name])
+        assert found.parameters["sd"][name] == pytest.approx(held.parameters["sd"][name], rel=0.02)
+
+
+def test_a_value_at_its_bound_is_as_uncertain_as_without_it(fit: Any) -> None:
+    """Its interval ends at the bound, and its profile rises from there."""
+    found = identify(rig(coulomb=NominalParameter(0.3, None, 0.28, 0.4)), progress=False)
+    assert found.parameters["sd"]["coulomb"] > 0.5 * fit.parameters["sd"]["coulomb"]
+    low, high = found.ci95("coulomb")
+    assert low == pytest.approx(0.28)
+    assert high > 0.28
+    profile = found.profile("coulomb", num_points=5)
+    assert len(profile) >= 3
+    assert profile["value"].min() == pytest.approx(0.28)
+    assert profile["cost"].iloc[0] == pytest.approx(0.0, abs=0.05)
+    assert (np.diff(profile["cost"]) > 0).all()
 
 
 def test_conditions_and_additions() -> None:

@@ -6,6 +6,7 @@
 #include <glog/logging.h>
 #endif
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -14,6 +15,7 @@
 
 namespace tendonlab::identify {
 namespace {
+constexpr int along_bounds = 3, most_rounds = 10;  ///< steps along the same bounds that make a crawl; solves of a fit
 using Vector = Eigen::VectorXd;
 using Coordinates = std::vector<Vector>;  ///< of the free states, a vector a task
 
@@ -56,22 +58,53 @@ class TaskCost final : public ceres::CostFunction {
   std::exception_ptr& thrown;
 };
 
-/// Keeps the best point, which Ceres forgets when a solve fails, and stops a cancelled one.
+/// Coordinates, by number.
+using Places = std::vector<int>;
+
+/// Those that lie on a bound: on its lower one for side -1, on its upper one for +1, on either for 0.
+Places on_bound(const Problem& problem, const Vector& x, int side = 0) {
+  Places on;
+  for (std::size_t k = 0; k < problem.free.size(); ++k) {
+    const Free& free = problem.free[k];
+    const auto touches = [&](double bound) {
+      return std::isfinite(bound) &&
+             std::fabs(x(static_cast<Eigen::Index>(k)) - bound) <= 1e-9 * (1 + std::fabs(bound));
+    };
+    if ((side <= 0 && touches(free.coordinate(free.lower))) || (side >= 0 && touches(free.coordinate(free.upper))))
+      on.push_back(static_cast<int>(k));
+  }
+  return on;
+}
+
+/// Keeps the best point, which Ceres forgets when a solve fails, and stops a cancelled solve, or one that moves along
+/// the same bounds, other than the `fixed` ones, for `patience` steps.
 class Watch final : public ceres::IterationCallback {
  public:
-  Watch(const Cancel* stop, const Vector& free, const Coordinates& states)
-      : cancel(stop), x(free), z(states), best_x(free), best_z(states) {}
+  Watch(const Problem& fitted, const Cancel* stop, const Vector& free, const Coordinates& states, const Places& fixed,
+        int steps)
+      : problem(fitted), cancel(stop), x(free), z(states), held(fixed), best_x(free), best_z(states), patience(steps) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
-    if (iteration.step_is_successful) best_x = x, best_z = z;
+    if (iteration.step_is_successful) {
+      best_x = x, best_z = z;
+      const Places now = on_bound(problem, x);
+      along = now == bounds && now != held ? along + 1 : 0;
+      bounds = now;
+    }
     iterations = iteration.iteration;
-    return cancel && cancel->load() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    crawls = along >= patience;
+    const bool ends = crawls || (cancel && cancel->load());
+    return ends ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
+  const Problem& problem;
   const Cancel* cancel;
   const Vector& x;
   const Coordinates& z;
+  const Places& held;
   Vector best_x;
   Coordinates best_z;
-  int iterations = 0;
+  int patience, along = 0, iterations = 0;
+  bool crawls = false;
+  Places bounds;
 };
 
 void add_priors(const Problem& problem, Vector& x, Coordinates& z, ceres::Problem& to) {
@@ -144,7 +177,7 @@ void tell(const ceres::Solver::Summary& summary, const Options& options, const s
     of.converged = false, of.message = "cancelled";
   else if (of.converged)
     of.message = "converged";
-  else if (summary.termination_type == ceres::NO_CONVERGENCE)
+  else if (summary.termination_type == ceres::NO_CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS)
     of.message = sentence("stopped after ", options.max_iterations, " iterations while the cost was still falling");
   else
     of.message = thrown ? "stopped where simulations fail: " + words(thrown) : "stopped: " + summary.message;
@@ -192,16 +225,14 @@ Coordinates start_of_states(const Problem& problem) {
 /// Everything about the point (x, z) that a caller asks for.
 Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
   Result of;
+  of.at_bound.assign(problem.free.size(), false);
+  for (const int k : on_bound(problem, x)) of.at_bound[static_cast<std::size_t>(k)] = true;
   of.values = problem.configuration.values;
   of.x.assign(x.data(), x.data() + x.size());
   for (std::size_t k = 0; k < problem.free.size(); ++k) {
     const Free& free = problem.free[k];
     const double at = of.x[k];
     of.values[free.index] = free.value(at);
-    const auto touches = [&](double bound) {
-      return std::isfinite(bound) && std::fabs(at - bound) <= 1e-9 * (1.0 + std::fabs(bound));
-    };
-    of.at_bound.push_back(touches(free.coordinate(free.lower)) || touches(free.coordinate(free.upper)));
     if (std::isfinite(free.sd)) of.prior_cost += 0.5 * std::pow((at - free.mean) / free.sd, 2);
   }
   of.cost = of.prior_cost;
@@ -213,6 +244,58 @@ Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
     of.cost += 0.5 * (z[e].squaredNorm() + of.tasks.back().residual.squaredNorm());
   }
   return of;
+}
+
+/// The coordinates that are kept on a bound because the cost falls beyond it.
+Places pressed(const Problem& problem, const Vector& x, const Result& at) {
+  Places against;
+  for (const int side : {-1, 1})
+    for (const int k : on_bound(problem, x, side)) {
+      const Free& free = problem.free[static_cast<std::size_t>(k)];
+      double slope = std::isfinite(free.sd) ? (x(k) - free.mean) / (free.sd * free.sd) : 0.0;
+      for (const Linearised& task : at.tasks) slope += task.by_free.col(k).dot(task.residual);
+      if (side * slope < 0) against.push_back(k);
+    }
+  std::sort(against.begin(), against.end());
+  return against;
+}
+/// Fixes the coordinates `held`, and none else.
+void hold(const Places& held, Vector& x, ceres::Problem& in) {
+  if (x.size() == 0) return;
+  in.SetParameterBlockVariable(x.data());
+  in.SetManifold(x.data(), nullptr);
+  if (static_cast<Eigen::Index>(held.size()) == x.size())
+    in.SetParameterBlockConstant(x.data());
+  else if (!held.empty())
+    in.SetManifold(x.data(), new ceres::SubsetManifold(static_cast<int>(x.size()), held));
+}
+/// Solves to the end. Ceres projects its steps on the bounds and crawls along them: what is pressed against one is
+/// fixed there while the rest is fitted, until nothing wants to move.
+Result settle(const Problem& problem, const Options& options, ceres::Problem& solved, Vector& x, Coordinates& z,
+              const std::exception_ptr& thrown) {
+  Places held;
+  int done = 0, patience = along_bounds;
+  for (int round = 1;; ++round) {
+    hold(held, x, solved);
+    auto with = solver_options(options, x, z);
+    with.max_num_iterations = options.max_iterations - done;
+    Watch watch(problem, options.cancel, x, z, held, patience);
+    with.callbacks.push_back(&watch);
+    ceres::Solver::Summary summary;
+    ceres::Solve(with, &solved, &summary);
+    x = watch.best_x, z = watch.best_z, done += watch.iterations;
+    Result of = describe(problem, x, z);
+    const Places against = pressed(problem, x, of);
+    const bool ends = done >= options.max_iterations || round == most_rounds ||
+                      summary.termination_type == ceres::FAILURE || (options.cancel && options.cancel->load());
+    if (ends || (against == held && !watch.crawls)) {
+      of.iterations = done;
+      tell(summary, options, thrown, of);
+      return of;
+    }
+    if (against == held) patience = options.max_iterations + 1;  // along bounds, but not pressed against more of them
+    held = against;
+  }
 }
 }  // namespace
 
@@ -253,14 +336,6 @@ Result fit(const Problem& problem, const Options& options) {
   add_priors(problem, x, z, solved);
   add_bounds(problem, x, solved);
   silence_log();
-  auto with = solver_options(options, x, z);
-  Watch watch(options.cancel, x, z);
-  with.callbacks.push_back(&watch);
-  ceres::Solver::Summary summary;
-  ceres::Solve(with, &solved, &summary);
-  Result of = describe(problem, watch.best_x, watch.best_z);
-  of.iterations = watch.iterations;
-  tell(summary, options, thrown, of);
-  return of;
+  return settle(problem, options, solved, x, z, thrown);
 }
 }  // namespace tendonlab::identify
