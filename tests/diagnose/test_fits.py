@@ -1,6 +1,7 @@
 """What a fit is worth: leaving out by one Newton step against fitting again, run-to-run factors, halves."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from tendonlab import _core
 from tendonlab.diagnose import floor as noise
+from tendonlab.diagnose import notes
 from tendonlab.diagnose.fits import Fitter
 from tendonlab.diagnose.search import Bar, Trial, _probabilities
 
@@ -30,6 +32,20 @@ def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, t
     for f in full.free:
         sd = f.slope(0.0) * np.sqrt(full.covariance[full.free.index(f), full.free.index(f)])
         assert step.parameters[f.name] == pytest.approx(again.system.parameters[f.name], abs=0.5 * abs(sd))
+
+
+def test_what_the_experiments_state_themselves_is_not_informed_and_told(fitter: Fitter, twin_case: Any) -> None:
+    """Of gravity, which every experiment knows, no residual says anything; nor is it proposed to be anything else."""
+    known = tuple(replace(e, conditions={**e.conditions, "gravity_torque": 1.0}) for e in twin_case.experiments)
+    case = replace(twin_case, experiments=known)
+    fitted = replace(fitter, case=case).fit(case.system, max_iterations=3)
+    assert fitted.not_informed == ("gravity_torque",)
+    assert fitted.system.parameters["gravity_torque"] == pytest.approx(case.system.parameters["gravity_torque"])
+    found: Any = SimpleNamespace(best=fitted, null=fitted)
+    told = "not informed by these data and held at the nominal value: gravity_torque"
+    assert told in notes.warnings(case, fitter.floor, found)
+    rows = notes.details(case, fitter.floor, fitted, found)["parameters"]
+    assert [name for name, row in rows.items() if not row["informed"]] == ["gravity_torque"]
 
 
 def test_factors_from_run_to_run_are_found(twin_case: Any) -> None:

@@ -210,3 +210,10 @@ def test_fitted_parameters_and_settings_carry_their_units(with_effect: Diagnosis
     page = read(replace(with_effect, details=details), tmp_path)[1]
     assert {"Parameters with the effect", "Cable stiffness ", "(N·m/rad)", "40 to 44"} <= set(page.text)
     assert "joint angle 210 µrad" in page.text
+
+
+def test_parameters_that_nothing_informs_show_no_interval(with_effect: Diagnosis, tmp_path: Path) -> None:
+    silent = {"value": 0.01, "ci95": [0.004, 0.016], "unit": "m", "nominal": 0.01, "informed": False}
+    page = read(replace(with_effect, details={"parameters": {"motor_radius_2": silent}}), tmp_path)[1]
+    assert "not informed by these data" in page.text
+    assert not {"4 to 16", "0.004 to 0.016"} & set(page.text)
