@@ -61,6 +61,11 @@ def test_what_cannot_be_simulated_is_refused(given: Any, error: type[Exception],
         SIM.simulate(given)
 
 
+def test_a_replay_that_a_simulator_alone_cannot_do_is_refused() -> None:
+    with pytest.raises(tl.ParameterError, match="replay = 'injection': expected one of auto, controller, free"):
+        SIM.simulate(PUSHED, replay="injection")
+
+
 def test_a_reference_with_a_gap_is_refused() -> None:
     closed = replace(SIM, controller=Controller("pd", 3.0, 0.1, "joint_angle", "reference_angle"))
     frame = PUSHED.assign(reference_angle=0.1 * np.sin(6.0 * TIME))

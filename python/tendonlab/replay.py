@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tendonlab.data import Controller, Dataset, Experiment
     from tendonlab.system import System
 
-KINDS = ("auto", "controller", "injection", "free")
+KINDS = ("auto", "controller", "free")  # that `simulate` takes: an injection needs the gains of a dataset
 
 
 @dataclass(frozen=True)
