@@ -49,15 +49,15 @@ class Problem:
             initial=tuple(tuple(state) for state in initial),
         )
 
-    def _stated(self) -> tuple[Any, ...]:
-        active, free = self.system.active(keep_zero=True), [f.core() for f in self.free]
-        return self.system.kind, self.values, active, self.tasks, free, self.settings
-
     def without(self, name: str, value: float) -> Problem:
         """The same problem with one free parameter held at `value`."""
         held = next(f for f in self.free if f.name == name)
         values = tuple(value if i == held.index else v for i, v in enumerate(self.values))
         return replace(self, values=values, free=tuple(f for f in self.free if f.name != name))
+
+    def _stated(self) -> tuple[Any, ...]:
+        active, free = self.system.active(keep_zero=True), [f.core() for f in self.free]
+        return self.system.kind, self.values, active, self.tasks, free, self.settings
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,8 +111,7 @@ class Identification:
         `reach` standard deviations to either side within bounds, all other parameters refitted at each point.
 
         Raises ParameterError for a parameter that was not fitted, fewer than 2 points or a reach that is no positive
-        number. The nats count the stated noise as independent;
-        `sd` and `ci95` do not."""
+        number. The nats count the stated noise as independent; `sd` and `ci95` do not."""
         self._require(name)
         if not isinstance(num_points, Integral) or num_points < 2:
             raise ParameterError(f"num_points = {num_points!r}: expected at least 2, a whole number")

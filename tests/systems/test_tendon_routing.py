@@ -9,6 +9,7 @@ import pytest
 import tendonlab as tl
 from tendonlab.papers.s1 import example_device, first_joints, free_motion, gravity
 from tendonlab.routing import TendonTransmission
+from tendonlab.terminal import identification_text
 
 MOTION = free_motion(duration=4.0, sample_time=0.01)
 
@@ -168,6 +169,7 @@ def test_a_fit_says_so_and_holds_what_belongs_to_joints_that_are_not_there(tmp_p
     alone = {"motor_velocity_1": SPEED, "motor_torque_1": TORQUE}
     found = tl.identify(tl.load(write(tmp_path, alone, constant_loss_1_0=2.0)), progress=False)
     assert any("external_torque_1" in warning for warning in found.warnings)
+    assert "counted as 0, which bears on" in " ".join(identification_text(found).split())
     there = {"radius_1_1", "motor_radius_1", "constant_loss_1_0"}
     assert set(found.parameters.index) - set(found.not_informed) <= there
     assert {"motor_radius_2", "radius_2_2", "radius_4_4"} <= set(found.not_informed)
