@@ -15,6 +15,7 @@ from tendonlab import _core, priors
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identification import Identification, Problem
 from tendonlab.replay import Prepared, choose, prepare
+from tendonlab.seed import generator
 from tendonlab.signals import white_noise_sd
 from tendonlab.uncertainty import uncertainty
 
@@ -57,7 +58,7 @@ def identify(
     ready = [prepare(e, base, replay) for e in chosen]
     noise = noise_sd(dataset, base, ready)
     problem = pose(dataset, base, chosen, ready, effects=effects, noise=noise, tolerance=tolerance)
-    found, best = _solve(_starts(problem, num_starts, np.random.default_rng(seed)), progress=progress)
+    found, best = _solve(_starts(problem, num_starts, generator(seed)), progress=progress)
     return _result(dataset, best, found, ready, noise)
 
 
