@@ -168,7 +168,7 @@ def parameter_unit(info: SystemInfo, parameter: Parameter, axis: str) -> str:
 
 def nearest(name: str, known: tuple[str, ...] | list[str]) -> str:
     """ "expected one of …", with the nearest known name first where one is near."""
-    near = difflib.get_close_matches(name, known, n=1)
+    near = difflib.get_close_matches(str(name), known, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"{hint}expected one of {', '.join(known)}"
 

@@ -18,6 +18,7 @@ from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identification import Identification, Problem
 from tendonlab.informed import hold
 from tendonlab.replay import Prepared, choose, prepare
+from tendonlab.seed import generator
 from tendonlab.signals import white_noise_sd
 from tendonlab.uncertainty import uncertainty
 
@@ -63,7 +64,7 @@ def identify(
     ready = [prepare(e, base, replay) for e in chosen]
     noise = noise_sd(dataset, base, ready)
     problem = pose(dataset, base, chosen, ready, effects=effects, noise=noise, tolerance=tolerance)
-    found, best = _solve(_starts(problem, num_starts, np.random.default_rng(seed)), progress=progress)
+    found, best = _solve(_starts(problem, num_starts, generator(seed)), progress=progress)
     return _result(dataset, best, found, ready, noise)
 
 

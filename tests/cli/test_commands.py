@@ -217,3 +217,8 @@ def test_a_terminal_without_the_letters_still_gets_the_answer(tmp_path: Path) ->
     done = subprocess.run(command, cwd=tmp_path, env=plain, capture_output=True, encoding="ascii", check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert "coulomb (N?m): kinetic friction" in done.stdout
+
+
+def test_a_seed_that_is_none_is_refused_before_the_work(capsys: Printed, tiny: Path) -> None:
+    assert main(["diagnose", str(tiny), "--seed", "-1"]) == 2
+    assert "seed = -1: expected a whole number of at least 0" in complaint(capsys)

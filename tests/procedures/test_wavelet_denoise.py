@@ -100,7 +100,7 @@ def test_without_pywavelets_the_message_names_the_extra(monkeypatch: pytest.Monk
         (MOTION[:13], {}, "values has 13 samples: expected at least 14"),
         (np.where(np.arange(10_000) == 412, np.nan, MOTION), {}, r"values\[412\] = nan: expected a finite number"),
         (MOTION.reshape(2, -1), {}, r"values has shape \(2, 5000\): expected one row of samples"),
-        (["a", "b"], {}, "values holds <U1: expected a row of real numbers"),
+        (["a", "b"], {}, "values holds <U1: expected real numbers"),
         (MOTION, {"wavelet": "db44"}, "wavelet = 'db44': expected a discrete wavelet"),
         (MOTION, {"mode": "sfot"}, "mode = 'sfot': did you mean 'soft'"),
         (MOTION, {"level": 0}, "level = 0: expected a whole number of at least 1"),

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 def nearest(name: str, known: Iterable[str], *, likeness: float = 0.6) -> str | None:
     """The known name most like `name`, or None where none reaches `likeness`, from 0 to 1 (the same)."""
-    matches = difflib.get_close_matches(name, list(known), n=1, cutoff=likeness)
+    matches = difflib.get_close_matches(str(name), list(known), n=1, cutoff=likeness)
     return matches[0] if matches else None
 
 

@@ -31,7 +31,8 @@ def compose(fitter: Fitter, nominal: Fitted, found: Search, *, seed: int, second
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     explained = _explained(stages, floor) if found.selected else None
     level = nominal.mean_square if floor.repeated else _plain_level(untouched, floor)
-    verdict = decide(found, nominal=level, explained=explained, floor=floor)
+    left = _plain_level(stages["refitted"], floor)
+    verdict = decide(found, nominal=level, refitted=left, explained=explained, floor=floor)
     records = where.PortRecords(case, stages["with_effect"], judged)
     rng = np.random.default_rng(seed)
     return Diagnosis(

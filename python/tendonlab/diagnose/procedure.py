@@ -22,6 +22,7 @@ from tendonlab.diagnose.floor import Floor, Sensitivities
 from tendonlab.diagnose.result import Diagnosis
 from tendonlab.diagnose.search import search
 from tendonlab.errors import ParameterError
+from tendonlab.seed import checked
 from tendonlab.system import System
 
 ROUGH = 8  # iterations of the first fit, of which only the residuals are used
@@ -41,10 +42,10 @@ def diagnose(
     effect causes it, and how far the gap shrinks on held-out experiments once it is added.
 
     `library`: "default", every effect that the system takes, or names as "joint:stribeck". `seed`: the bootstrap's.
-    Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect.
-    Ctrl-C stops it. Source: DIAGNOSIS section 2."""
+    Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect or a
+    `seed` that is no whole number. Ctrl-C stops it. Source: DIAGNOSIS section 2."""
     require_dataset(dataset)
-    began = time.monotonic()
+    began, seed = time.monotonic(), checked(seed)
     names = _library(dataset, library)
     case = make_case(dataset, system)
     with _workers() as (pool, cancel):

@@ -13,6 +13,7 @@ from tendonlab.diagnose.floor import Floor
 from tendonlab.diagnose.search import MATTERS, Round, Search
 
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
+FAR = 10.0  # mean square, in units of a floor that is only assumed, from which on it is no noise
 EXPLAINED = 0.85  # share of the held-out excess that library effects must remove to be the whole answer
 SOFT, SAME_GROUP = 0.05, 0.2
 
@@ -28,26 +29,25 @@ class Verdict:
     indistinguishable: list[list[str]]
 
 
-def decide(found: Search, *, nominal: float, explained: float | None, floor: Floor) -> Verdict:
-    """`nominal`: mean square over the floor at the untouched simulator (whitened, or plain where nothing repeats).
+def decide(found: Search, *, nominal: float, refitted: float, explained: float | None, floor: Floor) -> Verdict:
+    """`nominal`: mean square over the floor at the untouched simulator (whitened, or plain where nothing repeats);
+    `refitted`: the plain one of the refitted simulator on held-out experiments, which decides where nothing repeats.
     `explained`: share of the held-out excess that the selected effects remove, None where there is none."""
     nothing_to_tune = floor.repeated and NEAR_FLOOR > found.null.mean_square > (1 - MATTERS) * nominal
     at_floor = nominal < NO_GAP or (nothing_to_tune and not found.selected)
-    refitted_at_floor = found.null.mean_square < NEAR_FLOOR or not floor.repeated
+    room = NEAR_FLOOR - found.null.mean_square if floor.repeated else min(SOFT, FAR - refitted)
     none = found.rounds[0].probability[None] if found.rounds else 1.0
     weight = {
         "no_gap": _step(SOFT if at_floor else NO_GAP - nominal) * (1.0 if not found.selected else none),
-        "parameters_only": _step(nominal - NO_GAP)
-        * none
-        * _step((NEAR_FLOOR - found.null.mean_square) if floor.repeated else SOFT),
+        "parameters_only": _step(nominal - NO_GAP) * none * _step(room),
         "effect": (1.0 - none) * (_step((explained or 0.0) - EXPLAINED) if found.selected else 0.1),
         "unknown_effect": (1.0 - none) * (_step(EXPLAINED - (explained or 0.0)) if found.selected else 0.5)
-        + (0.0 if refitted_at_floor else none),
+        + (0.0 if room > 0 else none),
     }
     if at_floor:
         verdict = "no_gap"
     elif not found.selected:
-        verdict = "parameters_only" if refitted_at_floor else "unknown_effect"
+        verdict = "parameters_only" if room > 0 else "unknown_effect"
     else:
         verdict = "effect" if explained is not None and explained >= EXPLAINED else "unknown_effect"
     weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)

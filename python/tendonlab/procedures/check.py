@@ -14,13 +14,24 @@ from tendonlab.errors import ParameterError
 JITTER = 0.01  # share of the sampling interval by which intervals may differ and still count as even
 
 
+def reals(name: str, values: ArrayLike) -> np.ndarray:
+    """`values` as floats in their own shape, finite or not; neither text nor complex numbers, and nothing masked."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        where = np.argwhere(np.ma.getmaskarray(values))[0]
+        raise ParameterError(f"{name}[{', '.join(map(str, where))}] is masked: expected a number")
+    try:
+        given = np.asarray(values)
+    except ValueError as error:  # rows of unequal lengths
+        raise ParameterError(f"{name} holds rows of unequal lengths: expected real numbers") from error
+    try:
+        return given.astype(float, casting="unsafe" if given.dtype == object else "same_kind")
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{name} holds {given.dtype}: expected real numbers") from error
+
+
 def samples(name: str, values: ArrayLike, *, fewest: int = 1) -> np.ndarray:
     """`values` as a row of finite floats, at least `fewest` of them."""
-    given = np.asarray(values)
-    try:
-        row = given.astype(float, casting="unsafe" if given.dtype == object else "same_kind")
-    except (TypeError, ValueError) as error:
-        raise ParameterError(f"{name} holds {given.dtype}: expected a row of real numbers") from error
+    row = reals(name, values)
     if row.ndim != 1:
         raise ParameterError(f"{name} has shape {row.shape}: expected one row of samples")
     if len(row) < fewest:
@@ -74,16 +85,19 @@ def within(
     open_upper: bool = False,
 ) -> float:
     """A finite number between two bounds, either of which may be excluded."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
+    number = _number(value)
     inside = (lower < number if open_lower else lower <= number) and (number < upper if open_upper else number <= upper)
     if math.isfinite(number) and inside:
         return number
     left, right = "(" if open_lower or math.isinf(lower) else "[", ")" if open_upper or math.isinf(upper) else "]"
     expected = f"a value in {left}{lower:g}, {upper:g}{right} {unit}".rstrip()
     raise ParameterError(f"{name} = {value}: expected {expected}")
+
+
+def _number(value: object) -> float:
+    """A number as it stands, NaN for anything else: text that looks like one does not compute like one."""
+    given = np.asarray(value)
+    return float(given) if given.ndim == 0 and given.dtype.kind in "biuf" else math.nan
 
 
 def positive(name: str, value: float, unit: str = "") -> float:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.signal import lfilter
 
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, interval, positive, samples, times, within
+from tendonlab.procedures.check import along, interval, positive, reals, samples, times, within
 
 STANDARD_GRAVITY = 9.80665  # m/s^2
 
@@ -99,7 +99,7 @@ def pretension_from_load_cells(
 
     Raises ParameterError: readings below 0 (a cable cannot push) or not finite, unequal shapes, g not above 0."""
     positive("g", g, "m/s^2")
-    sides = [np.asarray(reading, dtype=float) for reading in (reading_in, reading_out)]
+    sides = [reals("reading_in", reading_in), reals("reading_out", reading_out)]
     for name, side in zip(("reading_in", "reading_out"), sides, strict=True):
         broken = side[~(np.isfinite(side) & (side >= 0.0))]
         if broken.size:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 
@@ -10,7 +11,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, times, within
+from tendonlab.procedures.check import along, times, whole, within
 from tendonlab.procedures.steady import steady_segment
 
 SAME_SPEED = 0.02  # share by which speeds of one set point may differ from one to the next
@@ -19,12 +20,20 @@ SAME_SPEED = 0.02  # share by which speeds of one set point may differ from one 
 @dataclass(frozen=True)
 class MapPoint:
     """A run at steady speed: `speed`, rad/s or m/s, and mean `torque`, N·m or N, both with their signs; `sd` of the
-    torque's samples about their mean (ripple and noise, not the uncertainty of the mean); `num_samples` of them."""
+    torque's samples about their mean (ripple and noise, not the uncertainty of the mean); `num_samples` of them.
+
+    Raises ParameterError for numbers that are not finite, a negative sd, fewer than 1 sample."""
 
     speed: float
     torque: float
     sd: float
     num_samples: int
+
+    def __post_init__(self) -> None:
+        within("speed", self.speed, -math.inf, math.inf, "rad/s or m/s")
+        within("torque", self.torque, -math.inf, math.inf, "N·m or N")
+        within("sd", self.sd, 0.0, math.inf, "N·m or N")
+        whole("num_samples", self.num_samples, 1)
 
     def to_dict(self) -> dict[str, float]:
         """The same as plain numbers."""
@@ -60,7 +69,7 @@ def friction_map(
     but one), `speed` and `torque` (means of the runs), `sd` (of the runs' torques about their mean; NaN for a single
     run), `sd_of_mean` = sd / sqrt(num_runs), `num_runs`. S0 takes 20 runs a point.
 
-    Raises ParameterError: no runs, numbers that are not finite, `tolerance` not in [0, 1)."""
+    Raises ParameterError: no runs, something else among them, `tolerance` not in [0, 1)."""
     within("tolerance", tolerance, 0.0, 1.0, open_upper=True)
     named = runs if isinstance(runs, Mapping) else {"": runs}
     rows = [row for name, points in named.items() for row in _rows(str(name), _points(points), tolerance)]
@@ -80,9 +89,6 @@ def _rows(name: str, points: list[MapPoint], tolerance: float) -> list[tuple[str
     points = sorted(points, key=lambda p: p.speed)
     speed = np.array([p.speed for p in points], dtype=float)
     torque = np.array([p.torque for p in points], dtype=float)
-    for point in points:
-        if not np.isfinite([point.speed, point.torque]).all():
-            raise ParameterError(f"runs of {name!r} hold {point}: expected finite numbers")
     apart = np.diff(speed) > tolerance * np.minimum(np.abs(speed[:-1]), np.abs(speed[1:]))
     rows = []
     for group in np.split(np.arange(len(points)), np.flatnonzero(apart) + 1):

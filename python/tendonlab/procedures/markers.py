@@ -13,8 +13,9 @@ from scipy.interpolate import CubicSpline, splev, splprep
 
 from tendonlab.catalog import nearest
 from tendonlab.errors import DatasetError, ParameterError
-from tendonlab.procedures.check import samples, whole
+from tendonlab.procedures.check import positive, reals, samples, whole, within
 from tendonlab.procedures.sheath_shape import Shape
+from tendonlab.seed import generator
 
 NUM_SAMPLES = 500  # of the paper
 RULES = ("left", "trapezoid", "turning")
@@ -60,8 +61,7 @@ class MarkerSpline:
         for name, value, known in (("kind", self.kind, KINDS), ("parameter", self.parameter, PARAMETERS)):
             if value not in known:
                 raise ParameterError(f"{name} = {value!r}: {nearest(value, known)}")
-        if not 0.0 <= self.smoothing < np.inf:
-            raise ParameterError(f"smoothing = {self.smoothing}: expected a marker sd >= 0, m")
+        within("smoothing", self.smoothing, 0.0, np.inf, "m, a marker's sd")
         whole("num_samples", self.num_samples, 3)
 
     def knots(self) -> np.ndarray:
@@ -134,10 +134,11 @@ def wrap_angle_uncertainty(
     """How sure the wrap angle is, by resampling: the markers are moved by noise of `marker_sd`, m, time and again.
 
     The noise of the markers themselves is in `value` already, so `bias` says what as much noise again would do."""
-    if not 0.0 < marker_sd < np.inf:
-        raise ParameterError(f"marker_sd = {marker_sd}: expected a positive sd, m")
+    if not isinstance(spline, MarkerSpline):
+        raise ParameterError(f"spline = {spline!r}: expected a MarkerSpline")
+    positive("marker_sd", marker_sd, "m")
     whole("num_resamples", num_resamples, 2)
-    rng = np.random.default_rng(seed)
+    rng = generator(seed)
     value = spline.wrap_angle(rule=rule)
     options: dict[str, Any] = {
         name: getattr(spline, name) for name in ("kind", "parameter", "smoothing", "num_samples")
@@ -150,7 +151,7 @@ def wrap_angle_uncertainty(
 
 
 def _checked(points: np.ndarray) -> np.ndarray:
-    points = np.asarray(points, dtype=float)
+    points = reals("points", points)
     if points.ndim != 2 or points.shape[1] not in (2, 3) or len(points) < 4 or not np.all(np.isfinite(points)):
         raise DatasetError(f"markers of shape {points.shape}: expected at least 4 finite rows of x, y or x, y, z, m")
     gaps = np.linalg.norm(points[:, None] - points[None], axis=2) + np.diag(np.full(len(points), np.inf))

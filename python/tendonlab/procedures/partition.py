@@ -6,6 +6,7 @@ import numpy as np
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures.check import whole, within
+from tendonlab.seed import generator
 
 
 def split(
@@ -16,11 +17,11 @@ def split(
     The first `share` of the samples trains (`contiguous`), or a random share of them drawn with `seed`. Neighbouring
     samples of one log resemble each other: a random split then makes validation look better than it is. S2 section IV.
 
-    Raises ParameterError where `n` is below 2 or `share` leaves one side empty."""
+    Raises ParameterError where `n` is below 2, `share` leaves one side empty, or `seed` is none."""
     whole("n", n, 2)
     within("share", share, 0.0, 1.0, open_lower=True, open_upper=True)
     num_train = int(np.floor(share * n + 0.5))
     if num_train in (0, n):
         raise ParameterError(f"share = {share} of n = {n}: expected at least one sample on either side")
-    order = np.arange(n) if contiguous else np.random.default_rng(seed).permutation(n)
+    order = np.arange(n) if contiguous else generator(seed).permutation(n)
     return np.sort(order[:num_train]), np.sort(order[num_train:])

@@ -12,6 +12,7 @@ from scipy.stats import qmc
 
 from tendonlab.procedures.check import choice, whole
 from tendonlab.procedures.descent import AT_BOUND, Box, Descent, evolution, multistart, rank_of, sd_of
+from tendonlab.seed import generator
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,19 +77,19 @@ def global_search(
     best divided by their noise's sd. Same `seed`, same result. Ctrl-C keeps the best start so far.
 
     Raises ParameterError: bounds that are not finite or not in order, unequal shapes, `starts` below 1 (5 for
-    "evolution"), a residual that is no row of numbers, or
+    "evolution"), no `seed`, a residual that is no row of numbers, or
     one of changing length; NumericalError: no start has a finite residual. Source: S0
     section 5 (at least 60 starts, or differential evolution; the rank of the Hessian)."""
     choice("method", method, METHODS)
     whole("starts", starts, 5 if method == "evolution" else 1)
     box = Box.between(lower, upper, log)
     descent = Descent(residual, box)
-    generator = np.random.default_rng(seed)
-    points = qmc.LatinHypercube(d=len(box.lower), seed=generator).random(starts)
+    rng = generator(seed)
+    points = qmc.LatinHypercube(d=len(box.lower), seed=rng).random(starts)
     if method == "multistart":
         unit, success, message, costs = multistart(descent, points, progress)
     else:
-        unit, success, message, costs = evolution(descent, points, generator, progress)
+        unit, success, message, costs = evolution(descent, points, rng, progress)
     unit = descent.polish(unit)
     values, slope, by_unit = box.values(unit), box.slope(unit), descent.jacobian(unit)
     at_bound = (unit < AT_BOUND) | (unit > 1.0 - AT_BOUND)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tendonlab.errors import ParameterError
+from tendonlab.procedures.check import positive, reals, whole, within
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +20,7 @@ class Shape:
     turning: np.ndarray = field(repr=False)
 
     def __post_init__(self) -> None:
-        s, phi = (np.ascontiguousarray(values, dtype=float) for values in (self.arc_length, self.turning))
+        s, phi = (np.ascontiguousarray(reals(name, getattr(self, name))) for name in ("arc_length", "turning"))
         object.__setattr__(self, "arc_length", s)
         object.__setattr__(self, "turning", phi)
         if s.shape != phi.shape or s.ndim != 1 or len(s) < 2 or s[0] != 0.0 or phi[0] != 0.0:
@@ -42,13 +43,20 @@ class Shape:
     @classmethod
     def even(cls, wrap_angle: float, *, length: float, num_samples: int = 501) -> Shape:
         """Constant curvature over the whole `length`, m."""
+        _check_plan(wrap_angle, length, num_samples)
         u = np.linspace(0.0, 1.0, num_samples)
         return cls(length * u, wrap_angle * u)
 
     @classmethod
     def skewed(cls, wrap_angle: float, *, length: float, skew: float, num_samples: int = 501) -> Shape:
         """Curvature that changes linearly along the sheath, theta/L (1 + skew (2 s/L - 1)); `skew` in [-1, 1]."""
-        if not -1.0 <= skew <= 1.0:
-            raise ParameterError(f"skew = {skew}: expected a value in [-1, 1]")
+        _check_plan(wrap_angle, length, num_samples)
+        within("skew", skew, -1.0, 1.0)
         u = np.linspace(0.0, 1.0, num_samples)
         return cls(length * u, wrap_angle * ((1.0 - skew) * u + skew * u**2))
+
+
+def _check_plan(wrap_angle: float, length: float, num_samples: int) -> None:
+    within("wrap_angle", wrap_angle, 0.0, np.inf, "rad")
+    positive("length", length, "m")
+    whole("num_samples", num_samples, 2)

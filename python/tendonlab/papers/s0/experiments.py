@@ -13,6 +13,7 @@ from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, configuration, loaded
 from tendonlab.papers.s0.maps import twin_map
 from tendonlab.papers.s0.models import Lugre, Proposed, printed_lugre
+from tendonlab.seed import generator
 from tendonlab.system import System
 
 LUGRE, PROPOSED = ("contact:static_lugre", "contact:viscous"), ("contact:load_and_ratio",)
@@ -38,7 +39,7 @@ def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
 
     Each load is mapped in four passes of five runs a point and both directions; the passes repeat one another, the last
     is held out. Everything is reconstructed."""
-    rng = np.random.default_rng(seed)
+    rng = generator(seed)
     ratio = configuration(transmission).ratio()
     experiments = [
         _experiment(transmission, load, k, ratio=ratio, rng=rng) for load in LOADS for k in range(1, PASSES + 1)

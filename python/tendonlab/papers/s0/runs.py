@@ -13,6 +13,7 @@ from tendonlab.errors import ParameterError
 from tendonlab.papers.s0 import twin
 from tendonlab.papers.s0.bench import SAMPLE_RATE, Configuration
 from tendonlab.procedures import LoadCell, MapPoint, map_point, reactive_torque
+from tendonlab.seed import generator
 
 LEVER = 0.06  # m, load cell to shaft axis: L of S0 eq. 6, whose value is not printed
 TRAVEL = 200.0  # rad of the input in every run: from the same position over the same cable
@@ -48,7 +49,7 @@ def simulate_run(
     both cells, `reading_1` and `reading_2`, N.
 
     The friction of a run differs from that of the next by 3 % and 1 mN·m (sd). Raises ParameterError as `trapezoid`."""
-    rng = np.random.default_rng(seed)
+    rng = generator(seed)
     time, velocity, acceleration = trapezoid(speed, travel=travel)
     inertia = MOTOR_INERTIA + of.capstan.inertia + (of.pulley.inertia + of.external.inertia) / of.ratio() ** 2
     friction = twin.friction(of, velocity)
@@ -64,7 +65,7 @@ def simulate_run(
 
 def schedule(speeds: np.ndarray, *, num_runs: int, seed: int | np.random.Generator = 0) -> np.ndarray:
     """Order of the runs: each speed `num_runs` times, shape (num_runs · n,), never twice in a row (S0 section 2.3)."""
-    rng = np.random.default_rng(seed)
+    rng = generator(seed)
     order: list[float] = []
     for _ in range(num_runs):
         turn = rng.permutation(speeds)

@@ -14,6 +14,7 @@ from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import Configuration, loaded
 from tendonlab.papers.tables import table
 from tendonlab.procedures.check import whole
+from tendonlab.seed import generator
 
 SPEEDS = np.concatenate([[1.0], np.arange(5.0, 106.0, 5.0)])  # rad/s, of the input; reconstructed grid
 PARALLEL_BUMP = 0.93  # peak of the parallel threading over the crossed one; reconstructed
@@ -87,7 +88,7 @@ def measured(
 
     Raises ParameterError for less than one run."""
     whole("num_runs", num_runs, 1)
-    rng = np.random.default_rng(seed)
+    rng = generator(seed)
     true = friction(of, speed)
     runs = true + noise_sd(true) * rng.normal(size=(num_runs, *np.shape(speed)))
     sd = runs.std(axis=0, ddof=1) if num_runs > 1 else noise_sd(true)

@@ -14,6 +14,7 @@ from tendonlab.papers.s1.device import GRAVITY, LOAD_LEVELS, example_device
 from tendonlab.papers.s1.identification import decompose, identify_joint, shares_by_bearings
 from tendonlab.procedures.check import positive, samples
 from tendonlab.routing import TendonTransmission
+from tendonlab.seed import generator
 
 NOISE = 5e-3  # N·m, of a motor torque [reconstructed]
 RUN_TO_RUN = 0.005  # relative sd of all losses from run to run [reconstructed]
@@ -128,7 +129,7 @@ def write_dataset(folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, 
     a dataset folder."""
     for k, level in enumerate(samples("levels", levels)):
         positive(f"levels[{k}]", level)
-    target, rng = Path(folder), np.random.default_rng(seed)
+    target, rng = Path(folder), generator(seed)
     target.mkdir(parents=True, exist_ok=True)
     lines = [
         'format = "tendonlab-dataset/1"',
