@@ -159,10 +159,11 @@ def _nominal_parameter(index: int, p: Parameter, stated: NominalParameter, scale
         default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
         sd = default if stated.sd is None else stated.sd / stated.value
         return Free(p.name, index, True, stated.value, stated.value, 0.0, sd, lower, upper)
-    width = AMPLITUDE_SD * scale if stated.sd is None else stated.sd
-    if stated.sd is None and stated.value != 0:
-        width = max(width, LOG_SD * abs(stated.value))
-    return Free(p.name, index, False, width, stated.value, stated.value / width, 1.0, lower, upper)
+    usual = max(AMPLITUDE_SD * scale, LOG_SD * abs(stated.value))
+    if stated.sd is None or math.isinf(stated.sd):  # inf: nothing is believed, and the scale only measures
+        sd = 1.0 if stated.sd is None else math.inf
+        return Free(p.name, index, False, usual, stated.value, stated.value / usual, sd, lower, upper)
+    return Free(p.name, index, False, stated.sd, stated.value, stated.value / stated.sd, 1.0, lower, upper)
 
 
 def _effect_parameter(index: int, p: Parameter, scale: float, value: float) -> Free:

@@ -72,8 +72,12 @@ class Contact {
     const bool slides = m < directions;
     if constexpr (general) {
       const auto c = couple_in_duals(system, y, frame, in);
-      const auto& guard = slides ? c.port[static_cast<std::size_t>(representative[m])].velocity
-                                 : c.port[static_cast<std::size_t>(side_port[m])].position;
+      const auto& guard = [&]() -> const auto& {
+        if constexpr (System::sides > 0)
+          if (!slides) return c.port[static_cast<std::size_t>(side_port[m])].position;
+        return c.port[static_cast<std::size_t>(representative[m])].velocity;
+      }
+      ();
       double sum = plain(guard.d[2 * n]);
       for (std::size_t j = 0; j < n; ++j)
         sum += plain(guard.d[j]) * plain(y.at.velocity[j]) + plain(guard.d[n + j]) * plain(rate.acceleration[j]);

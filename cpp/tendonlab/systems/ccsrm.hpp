@@ -1,85 +1,45 @@
 #pragma once
-#include "tendonlab/systems/system.hpp"
+#include "tendonlab/systems/ccsrm_cables.hpp"
 #include "tendonlab/transmission/end_compliance.hpp"
 
 namespace tendonlab::systems {
 /// Two joints that two S-shaped cables couple to turn by equal angles over two pulleys (S4). Joint 2 is driven:
 ///   J theta_1'' = r (T_21 - T_11) - friction
-///   T_12 = T_p - k r (theta_2 - theta_1),  T_22 = T_p + k r (theta_2 - theta_1)               middle sections
-///   T_11 = T_12 - f_11,  T_13 = T_12 - f_12,  T_21 = T_22 - f_21,  T_23 = T_22 - f_22         end sections
-/// Slip v is positive towards the middle section, so f opposes it: v = r (-theta_1', theta_2', theta_1', -theta_2').
 /// What is the same whether the end sections stretch or not stands here.
 template <class T>
-struct CcsrmTables {
+struct CcsrmTables : CcsrmCables<T> {
   static constexpr std::string_view name = "ccsrm",
                                     equation =
                                         "J theta_1'' = r (T_21 - T_11) - friction; T_i2 = T_p -+ k r (theta_2 - "
                                         "theta_1); T_i1 = T_i2 - f_i1; T_i3 = T_i2 - f_i2";
+  using Cables = CcsrmCables<T>;
   enum PortOf { joint, c11, c12, c21, c22, cable, e11, e12, e21, e22 };
   static constexpr int sides = 0;
   static constexpr bool commanded = false;
-  static constexpr std::array<Input, 1> inputs{
-      {{"driver_angle", "angle of the driven joint 2", Dimension::angle, true, Between::smooth}}};
-  static constexpr std::array<Output, 7> outputs{
-      {{"joint_angle", "angle of joint 1", Dimension::displacement, 0},
-       {"tension_11", "tension of cable 1 beyond pulley 1", Dimension::force, -1},
-       {"tension_12", "tension of cable 1 between the pulleys", Dimension::force, -1},
-       {"tension_13", "tension of cable 1 beyond pulley 2", Dimension::force, -1},
-       {"tension_21", "tension of cable 2 beyond pulley 1", Dimension::force, -1},
-       {"tension_22", "tension of cable 2 between the pulleys", Dimension::force, -1},
-       {"tension_23", "tension of cable 2 beyond pulley 2", Dimension::force, -1}}};
-  static constexpr std::array<std::string_view, 0> structural{};
-  static constexpr std::array<std::string_view, 4> nominal{"contact:capstan", "contact:presliding", "contact:stribeck",
-                                                           "contact:viscous"};
-  static constexpr bool plain_names = true;
-  static constexpr std::array<Renamed, 1> renamed{{{"contact:viscous", "viscous", "contact_viscous"}}};
+  static constexpr std::array<Input, 1> inputs{{Cables::driver}};
+  static constexpr std::array<Output, 7> outputs{{{"joint_angle", "angle of joint 1", Dimension::displacement, 0},
+                                                  Cables::sections[0],
+                                                  Cables::sections[1],
+                                                  Cables::sections[2],
+                                                  Cables::sections[3],
+                                                  Cables::sections[4],
+                                                  Cables::sections[5]}};
 
-  using Contact =
-      Slot<T, typename Joined<transmission::Contacts, Laws<friction::Presliding, friction::Viscous, friction::Coulomb,
-                                                           friction::LoadDependence>>::type>;
-  using Middle = Slot<T, Laws<friction::Viscous>>;
+  using Contact = typename Cables::Contact;
   using Ends = Slot<T, Laws<transmission::EndCompliance>>;
-  std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, Middle, Ends, Ends, Ends, Ends> slot;
+  std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, typename Cables::Middle, Ends, Ends, Ends,
+             Ends>
+      slot;
   Chain<T, Laws<>> load, actuation;
   std::array<Chain<T, sensing::All>, 7> sensor;
-  T cable_stiffness, pretension, pulley_radius, initial_wrap_angle, inertia;
+  T inertia;
 
   static constexpr auto parameters() {
-    using Own = CcsrmTables;
-    return std::tuple{parameter(&Own::cable_stiffness, "cable_stiffness", Dimension::line_stiffness, Purpose::structure,
-                                1e5, 1e-3, inf, "tension per stretch of a middle section"),
-                      parameter(&Own::pretension, "pretension", Dimension::force, Purpose::structure, 50.0, 0.0, inf,
-                                "tension of both cables at equal angles without friction"),
-                      parameter(&Own::pulley_radius, "pulley_radius", Dimension::length, Purpose::structure, 0.012,
-                                1e-6, inf, "radius of the pulleys"),
-                      parameter(&Own::initial_wrap_angle, "initial_wrap_angle", Dimension::angle, Purpose::structure,
-                                1.69, 1e-3, inf, "wrap angle of every contact at angle 0"),
-                      parameter(&Own::inertia, "inertia", Dimension::inertia, Purpose::structure, 0.01, 1e-12, inf,
-                                "inertia of what joint 1 carries")};
+    return std::tuple_cat(Cables::parameters(),
+                          std::tuple{parameter(&CcsrmTables::inertia, "inertia", Dimension::inertia, Purpose::structure,
+                                               0.01, 1e-12, inf, "inertia of what joint 1 carries")});
   }
   T effort_per_command() const { return T(1.0); }
-
- protected:
-  static constexpr double flip[4] = {-1.0, 1.0, 1.0, -1.0};  ///< slip of each contact per turn of its joint
-
-  /// A cable does not push.
-  template <class S>
-  static S pulling(const S& tension) {
-    return select(plain(tension) > 0.0, tension, constant<S>(0.0));
-  }
-  /// Wrap angles (S4 eq. 16), and as loads the middle tensions where cable 1 is longer by stretch[0] and cable 2 by
-  /// stretch[1], m.
-  template <class S, class Coupled>
-  void load_contacts(Coupled& c, const S& theta_1, const S& theta_2, const S (&stretch)[2]) const {
-    const S more = std::get<cable>(slot).respond(c.port[cable], S{}).force;  // of positions and velocities only
-    const S tension[2] = {pulling(S(pretension + cable_stiffness * stretch[0] - more)),
-                          pulling(S(pretension + cable_stiffness * stretch[1] + more))};
-    const S turn[4] = {theta_1, theta_2, theta_1, theta_2};
-    for (std::size_t i = 0; i < 4; ++i) {
-      c.port[c11 + i].load = tension[i / 2];
-      c.port[c11 + i].wrap = initial_wrap_angle - flip[i] * turn[i];
-    }
-  }
 };
 
 template <class T>
@@ -120,19 +80,12 @@ struct Ccsrm : CcsrmTables<T> {
   template <class S, class Modes, class Inputs>
   Coupling<S, 10, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
     Coupling<S, 10, 1> c;
-    const T& r = this->pulley_radius;
-    const S theta_1 = at.position[0], theta_2 = in.template input<0>(at.time);
-    const S speed[2] = {r * at.velocity[0], r * in.template slope<0>(at.time)};
-    for (std::size_t i = 0; i < 4; ++i) {
-      c.port[c11 + i].velocity = Base::flip[i] * speed[i % 2];
-      c.port[c11 + i].direction = Base::flip[i] * mode[i % 2];
-    }
-    const S longer = r * (theta_2 - theta_1), stretch[2] = {-longer, longer};
-    c.port[cable].position = longer;
-    c.port[cable].velocity = speed[1] - speed[0];
-    this->load_contacts(c, theta_1, theta_2, stretch);
-    c.applied[0] = r * (c.port[c21].load - c.port[c11].load);
-    c.port[joint].position = theta_1;
+    const S angle[2] = {at.position[0], in.template input<0>(at.time)};
+    const S rate[2] = {at.velocity[0], in.template slope<0>(at.time)};
+    this->follow_joints(&c.port[c11], c.port[cable], std::get<cable>(this->slot), angle, rate);
+    for (std::size_t i = 0; i < 4; ++i) c.port[c11 + i].direction = Base::flip[i] * mode[i % 2];
+    c.applied[0] = this->pulley_radius * (c.port[c21].load - c.port[c11].load);
+    c.port[joint].position = at.position[0];
     c.port[joint].velocity = at.velocity[0];
     c.port[joint].load = c.applied[0];
     c.port[joint].direction = mode[0];
@@ -140,14 +93,12 @@ struct Ccsrm : CcsrmTables<T> {
   }
   template <class S, class Force, class PortAt>
   std::array<S, 7> observe(const Motion<S, 1>& at, const Force& force, const PortAt& port) const {
-    const auto end = [&](auto i) { return port(i).load - force(i); };  // S4 eq. 31
-    return {at.position[0],
-            end(std::integral_constant<int, c11>{}),
-            port(std::integral_constant<int, c11>{}).load,
-            end(std::integral_constant<int, c12>{}),
-            end(std::integral_constant<int, c21>{}),
-            port(std::integral_constant<int, c21>{}).load,
-            end(std::integral_constant<int, c22>{})};
+    const auto each = [](auto&& of) -> std::array<S, 4> {
+      return {of(std::integral_constant<int, c11>{}), of(std::integral_constant<int, c12>{}),
+              of(std::integral_constant<int, c21>{}), of(std::integral_constant<int, c22>{})};
+    };
+    const auto six = Base::tensions(each([&](auto i) { return port(i).load; }), each(force));
+    return {at.position[0], six[0], six[1], six[2], six[3], six[4], six[5]};
   }
 };
 
@@ -201,7 +152,7 @@ struct CcsrmElastic : CcsrmTables<T> {
     const S rate[2] = {-r * (at.velocity[1] + at.velocity[2]), -r * (at.velocity[3] + at.velocity[4])};
     c.port[cable].position = 0.5 * (stretch[1] - stretch[0]);
     c.port[cable].velocity = 0.5 * (rate[1] - rate[0]);
-    this->load_contacts(c, turn[0], turn[1], stretch);
+    this->load_contacts(&c.port[c11], c.port[cable], std::get<cable>(this->slot), turn, stretch);
     for (std::size_t i = 0; i < 4; ++i) {
       c.port[c11 + i].velocity = r * at.velocity[1 + i];
       c.port[c11 + i].direction = mode[1 + i];

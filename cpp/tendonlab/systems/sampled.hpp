@@ -29,10 +29,9 @@ Sliding<T> sliding(const T& velocity, const T& position, const T& load, const T&
   return {velocity, position, load, static_cast<double>((v > 0) - (v < 0)), 0.0, wrap};
 }
 
-/// Takes the memory `z` of a slot over `dt` at a constant sliding `at`, exactly for laws linear in z, and gives the
-/// force at the end.
+/// Takes the memory `z` of a slot over `dt` at a constant sliding `at`, exactly for laws linear in z.
 template <class Slot, class T>
-T answer(const Slot& slot, const Sliding<T>& at, T& z, double dt) {
+void advance(const Slot& slot, const Sliding<T>& at, T& z, double dt) {
   if constexpr (Slot::states > 0) {
     if (slot.has(role::memory) && dt > 0) {
       using D = Dual<T, 1>;
@@ -47,9 +46,14 @@ T answer(const Slot& slot, const Sliding<T>& at, T& z, double dt) {
       z = z + horizon * rate.value;
     }
   }
+}
+/// The same, and the force at the end.
+template <class Slot, class T>
+T answer(const Slot& slot, const Sliding<T>& at, T& z, double dt) {
+  advance(slot, at, z, dt);
   return slot.respond(at, z).force;
 }
-/// The same for a slot that remembers nothing.
+/// The force of a slot that remembers nothing.
 template <class Slot, class T>
 T answer(const Slot& slot, const Sliding<T>& at) {
   static_assert(Slot::states == 0, "this slot remembers: say where");

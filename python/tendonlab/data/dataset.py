@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NominalParameter:
-    """A simulator's value, SI; `sd` None: the library's default prior, 0: known exactly and never fitted."""
+    """A simulator's value, SI; `sd` None: the library's default prior, 0: known exactly and never fitted, inf: nothing
+    is known beforehand."""
 
     value: float
     sd: float | None = None

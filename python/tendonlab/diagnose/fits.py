@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.diagnose.case import Case
-from tendonlab.diagnose.floor import Floor, integrated_time, kept_samples
+from tendonlab.diagnose.floor import Floor, integrated_time, kept_samples, whitenings
 from tendonlab.informed import informed
 from tendonlab.priors import Free, free_parameters
 from tendonlab.system import System
@@ -172,6 +172,11 @@ class Fitter:
             found = _core.linearise(*arguments, initial=start)
         fitted = system.with_parameters({f.name: found["values"][f.index] for f in free})
         return self._summarise(fitted, tuple(added), tuple(free), found)
+
+    def under(self, level: float) -> Fitter:
+        """The same under noise of `level` times the power, for fits to the training experiments."""
+        floor = replace(self.floor, sd=[float(np.sqrt(level)) * sd for sd in self.floor.sd])
+        return replace(self, whitening=whitenings(self.case, floor), floor=floor)
 
     def _summarise(
         self, system: System, added: tuple[str, ...], free: tuple[Free, ...], found: Mapping[str, Any]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -13,6 +13,7 @@ from tendonlab.diagnose.confirm import NEAR_FLOOR, confirmed
 from tendonlab.diagnose.fits import Fitted, Fitter
 from tendonlab.diagnose.screen import Lead, candidates, screen
 from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.system import System
 
 NUM_REFIT, NUM_REFIT_AGAIN = 8, 4
 DETECT_EVIDENCE, DETECT_LEFT_OUT = 10.0, 3.0
@@ -24,6 +25,8 @@ MATTERS = 0.05  # share of the whitened mean square that an effect must remove n
 HOPEFUL = 0.3  # of what an effect must gain, which the screen must promise for a refit
 SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5
+STRAINED = 3.0  # sd from what was believed, to which a parameter was tuned: it makes up for something
+COOLINGS = 6  # fits under noise as large as the misfit, at the most
 
 
 @dataclass(frozen=True)
@@ -164,26 +167,69 @@ def _holds(fitter: Fitter, best: Fitted, trial: Trial, *, further: bool) -> bool
 
 
 def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> list[Trial]:
-    """The best fit over the starts; after a sketch, one that lies far behind `rival` is not finished."""
+    """The best fit over the starts of a lead."""
     found: Fitted | None = None
-    for start in lead.starts:
-        system = best.system.with_effects({lead.effect: start})
-        added = (*best.added, lead.effect)
-        try:
-            fitted = fitter.fit(system, added=added, initial=best.initial, max_iterations=SKETCH)
-            behind = rival is not None and fitted.evidence - best.evidence < CATCH_UP * rival
-            worse = found is not None and fitted.evidence < found.evidence - 50
-            if not (fitted.converged or behind or worse):
-                fitted = fitter.fit(fitted.system, added=added, initial=fitted.initial, max_iterations=40)
-        except (NumericalError, ParameterError):
-            continue
-        if found is None or fitted.evidence > found.evidence:
-            found = fitted
+    for values in lead.starts:
+        found = _better(found, fitter, best, {lead.effect: values}, rival=rival)
+    if _strained(fitter, best) and (found is None or found.mean_square > NEAR_FLOOR):
+        found = _better(found, fitter, best, {lead.effect: lead.starts[0]}, rival=rival, believed=True)
     if found is None:
         return []
     gains = found.left_out - best.left_out
     spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else float("inf")
     return [Trial(lead.effect, found, found.evidence - best.evidence, float(np.sum(gains)), spread)]
+
+
+def _better(
+    found: Fitted | None,
+    fitter: Fitter,
+    best: Fitted,
+    effect: Mapping[str, Mapping[str, float]],
+    *,
+    rival: float | None,
+    believed: bool = False,
+) -> Fitted | None:
+    """`found`, or the fit of `best` with `effect` where that has more evidence; after a sketch, one that lies far
+    behind `rival` is not finished. `believed`: from what was believed of the simulator, not from what it was tuned
+    to."""
+    added = (*best.added, *effect)
+    try:
+        system, initial = best.system.with_effects(effect), best.initial
+        if believed:
+            system, initial = _cooled(fitter, best, system, added)
+        fitted = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH)
+        behind = rival is not None and fitted.evidence - best.evidence < CATCH_UP * rival
+        worse = found is not None and fitted.evidence < found.evidence - 50
+        if not (fitted.converged or behind or worse):
+            fitted = fitter.fit(fitted.system, added=added, initial=fitted.initial, max_iterations=40)
+    except (NumericalError, ParameterError):
+        return found
+    return fitted if found is None or fitted.evidence > found.evidence else found
+
+
+def _strained(fitter: Fitter, best: Fitted) -> bool:
+    """Was a nominal parameter tuned further than is believable? It makes up for what is missing, and once that is
+    there, its value is no good place to start from."""
+    known = fitter.case.dataset.parameters
+    return any(abs(x - f.mean) > STRAINED * f.sd for f, x in zip(best.free, best.x, strict=True) if f.name in known)
+
+
+def _cooled(
+    fitter: Fitter, best: Fitted, system: System, added: Sequence[str]
+) -> tuple[System, tuple[tuple[float, ...], ...]]:
+    """A start from the believed values: fits under noise as large as the misfit, so that what the data say little of
+    stays where it is believed, as long as each fit halves the misfit."""
+    known = fitter.case.dataset.parameters
+    system = system.with_parameters({f.name: f.value(f.mean) for f in best.free if f.name in known})
+    fitted = fitter.fit(system, added=added, solve=False)
+    misfit = fitted.mean_square
+    for _ in range(COOLINGS):
+        level = max(1.0, misfit)
+        fitted = fitter.under(level).fit(fitted.system, added=added, initial=fitted.initial, max_iterations=SKETCH)
+        misfit = level * fitted.mean_square
+        if misfit > 0.5 * level or misfit < NEAR_FLOOR:
+            break
+    return fitted.system, fitted.initial
 
 
 def _bar(fitter: Fitter, before: Sequence[Round]) -> Bar:

@@ -27,7 +27,7 @@ from tendonlab.papers.s4.identification import (
     identify_stiffness,
     pointwise_stiffness,
 )
-from tendonlab.papers.s4.library import simulate, simulator
+from tendonlab.papers.s4.library import simulate, simulator, tension_simulator
 from tendonlab.papers.s4.line_contact import LineContactLuGre
 from tendonlab.papers.s4.metrics import dwell, error_levels, loop_width, nrmse, spread, synchronous_error
 from tendonlab.papers.s4.play import capstan_play, saturation
@@ -47,6 +47,7 @@ from tendonlab.papers.s4.statics import (
     stretch,
     wrap_angles,
 )
+from tendonlab.papers.s4.tensions import fit_tensions
 from tendonlab.papers.s4.twin import TENSIONS, CcsrmModel
 
 __all__ = [
@@ -78,6 +79,7 @@ __all__ = [
     "dwell",
     "equilibrium_error",
     "error_levels",
+    "fit_tensions",
     "friction_coefficient",
     "frictionless_stiffness",
     "identified",
@@ -104,6 +106,7 @@ __all__ = [
     "stiffness",
     "stretch",
     "synchronous_error",
+    "tension_simulator",
     "wrap_angles",
     "write_rig",
 ]

@@ -12,7 +12,7 @@ from tendonlab.papers.s4.constants import RESOLUTION, contact, design, identifie
 from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.rig import NOISE, Case, measured, run_rig
 from tendonlab.papers.s4.twin import TENSIONS
-from tendonlab.procedures.check import positive
+from tendonlab.procedures.check import choice, positive
 
 SAMPLE_STEP = 10  # every tenth sample of 1 kHz: 100 Hz
 SOFT_START, EASE = 0.5, 2  # s: what is differentiated must not jump at the start of a record
@@ -44,10 +44,21 @@ def nominal(*, knows_direction: bool) -> Nominal:
 
 
 def write_rig(
-    folder: Path | str, of: Case, believed: Nominal, *, name: str, duration: float = 6.0, seed: int = 0
+    folder: Path | str,
+    of: Case,
+    believed: Nominal,
+    *,
+    name: str,
+    system: str = "ccsrm",
+    duration: float = 6.0,
+    seed: int = 0,
 ) -> Path:
     """Record six motions of the twin `of` from rest into a new `folder` as a dataset (FORMATS section 1) that `tl.load`
-    reads, whose simulator is `believed`; returns the folder. Same seed, same noise."""
+    reads, whose simulator is `believed`; returns the folder. Same seed, same noise.
+
+    `system`: "ccsrm", which simulates joint 1, or "ccsrm_tensions", which takes its angle as read and leaves the
+    tensions to be explained. Raises ParameterError for another one."""
+    choice("system", system, ("ccsrm", "ccsrm_tensions"))
     path = Path(folder)
     path.mkdir(parents=True, exist_ok=False)
     rng = np.random.default_rng(seed)
@@ -61,7 +72,7 @@ def write_rig(
         read = measured(runs[amplitude, period], seed=rng, jitter=JITTER).iloc[::SAMPLE_STEP]
         columns = {"theta2": "driver_angle", "theta1": "joint_angle", **{T: f"tension_{T[1:]}" for T in TENSIONS}}
         read.rename(columns=columns)[list(columns.values())].to_csv(path / f"{label}.csv", float_format="%.9g")
-    (path / "dataset.toml").write_text(_toml(of, believed, name), encoding="utf-8")
+    (path / "dataset.toml").write_text(_toml(of, believed, name, system), encoding="utf-8")
     return path
 
 
@@ -71,7 +82,7 @@ def softer(of: Case, *, k: float) -> Case:
     return replace(of, meaning=f"softer cable, k = {k:g} N/m", k=k, ends=None)
 
 
-def _toml(of: Case, believed: Nominal, name: str) -> str:
+def _toml(of: Case, believed: Nominal, name: str, system: str) -> str:
     found, c, m = identified(), contact(), design()
     effects = ["contact:capstan", "contact:presliding", "contact:stribeck", "contact:viscous"]
     values = {
@@ -79,7 +90,6 @@ def _toml(of: Case, believed: Nominal, name: str) -> str:
         "pretension": (of.T_p, 1.0),
         "pulley_radius": (m.r, 0),
         "initial_wrap_angle": (m.theta_w0, 0),
-        "inertia": (m.J, 0),
         "friction_coefficient": (believed.mu, 0.03),
         "contact_viscous": (c.sigma_2, 0.3 * c.sigma_2),
         "static_friction_coefficient": (c.mu_s / c.mu_c * believed.mu, 0),  # what the paper keeps as in Table III
@@ -90,6 +100,8 @@ def _toml(of: Case, believed: Nominal, name: str) -> str:
         "stribeck_share": (1.0, 0),
         "presliding_share": (1.0, 0),
     }
+    if system == "ccsrm":
+        values["inertia"] = (m.J, 0)
     if believed.knows_direction:
         effects.append("contact:asymmetry")
         difference = (found.mu_plus - found.mu_minus) / (found.mu_plus + found.mu_minus)
@@ -100,7 +112,7 @@ def _toml(of: Case, believed: Nominal, name: str) -> str:
         f'description = "Synthetic twin of the rig of S4 ({of.meaning}), made by tendonlab.papers.s4"',
         'time = { column = "t", unit = "s" }',
         "[system]",
-        'kind = "ccsrm"',
+        f'kind = "{system}"',
         f"nominal_effects = {effects}".replace("'", '"'),
         "[system.parameters]",
         *(f"{key} = {{ value = {value!r}, sd = {sd!r} }}" for key, (value, sd) in values.items()),
@@ -113,5 +125,5 @@ def _toml(of: Case, believed: Nominal, name: str) -> str:
     for label, _, _, repeat, split in MOTIONS:
         lines += ["[[experiments]]", f'name = "{label}"', f'file = "{label}.csv"', f'split = "{split}"']
         lines += [f'repeat = "{repeat}"'] if repeat else []
-        lines += ["initial = { joint_angle = 0.0, joint_velocity = 0.0 }"]
+        lines += ["initial = { joint_angle = 0.0, joint_velocity = 0.0 }"] if system == "ccsrm" else []
     return "\n".join(lines) + "\n"

@@ -28,7 +28,8 @@ def identify_stiffness(T22: np.ndarray, dtheta: np.ndarray, *, r: float, T_p: fl
     """Stiffness of a middle section from its tension T22, N, against the synchronous error `dtheta`, rad (S4 eq. 37).
 
     With `T_p` given k is the closed form sum (T22 - T_p) r dtheta / sum (r dtheta)²; without, both are fitted, since
-    the relation is affine. Raises ParameterError where the error does not vary or a sample is not finite."""
+    the relation is affine. `fit_tensions` is the same by Ceres, and fits friction too. Raises ParameterError where the
+    error does not vary or a sample is not finite."""
     T22, dtheta = samples("T22", T22), samples("dtheta", dtheta)
     stretch = positive("r", r, "m") * dtheta
     if not np.ptp(stretch) > 0:

@@ -23,22 +23,9 @@ def simulator(
 
     `line.mu_back` adds "contact:asymmetry", `joint` the joint's dry friction with a bristle, `end_stiffness`, N/m,
     "ends:compliance"."""
-    m, c = mechanism or design(), line or contact()
-    back = c.mu_c if c.mu_back is None else c.mu_back
-    mean = 0.5 * (c.mu_c + back)
-    made = System(
-        kind="ccsrm",
-        effects=system_info("ccsrm").default_nominal_effects,
-        parameters={
-            "cable_stiffness": m.k, "pretension": m.T_p, "pulley_radius": m.r, "initial_wrap_angle": m.theta_w0,
-            "inertia": m.J, "friction_coefficient": mean, "smallest_level": c.eps,
-            "static_friction_coefficient": c.mu_s * mean / c.mu_c, "stribeck_velocity": c.v_s,
-            "bristle_stiffness": c.sigma_0, "bristle_damping": c.sigma_1, "contact_viscous": c.sigma_2,
-        },
-    )  # fmt: skip
+    m = mechanism or design()
+    made = _made("ccsrm", m, line or contact(), inertia=m.J)
     more: dict[str, dict[str, float]] = {}
-    if c.mu_back is not None:
-        more["contact:asymmetry"] = {"coefficient_asymmetry": 0.5 * (c.mu_c - back) / mean}
     if joint is not None and joint.f_c > 0:
         more["joint:coulomb"] = {"coulomb": joint.f_c}
         more["joint:stribeck"] = {"static_excess": joint.f_s - joint.f_c, "stribeck_velocity": joint.v_s}
@@ -46,6 +33,30 @@ def simulator(
     if end_stiffness is not None:
         more["ends:compliance"] = {"compliance": 1.0 / end_stiffness}
     return made.with_effects(more)
+
+
+def tension_simulator(mechanism: Mechanism | None = None, line: Contact | None = None) -> System:
+    """The same cables and contacts without the joint's dynamics: six tensions of both measured angles (the library's
+    system "ccsrm_tensions"). `line.mu_back` adds "contact:asymmetry"."""
+    return _made("ccsrm_tensions", mechanism or design(), line or contact())
+
+
+def _made(kind: str, m: Mechanism, c: Contact, **own: float) -> System:
+    back = c.mu_c if c.mu_back is None else c.mu_back
+    mean = 0.5 * (c.mu_c + back)
+    made = System(
+        kind=kind,
+        effects=system_info(kind).default_nominal_effects,
+        parameters={
+            "cable_stiffness": m.k, "pretension": m.T_p, "pulley_radius": m.r, "initial_wrap_angle": m.theta_w0,
+            "friction_coefficient": mean, "smallest_level": c.eps,
+            "static_friction_coefficient": c.mu_s * mean / c.mu_c, "stribeck_velocity": c.v_s,
+            "bristle_stiffness": c.sigma_0, "bristle_damping": c.sigma_1, "contact_viscous": c.sigma_2, **own,
+        },
+    )  # fmt: skip
+    if c.mu_back is None:
+        return made
+    return made.with_effects({"contact:asymmetry": {"coefficient_asymmetry": 0.5 * (c.mu_c - back) / mean}})
 
 
 def simulate(of: System, drive: Drive, time: np.ndarray, *, tolerance: float = 1e-7) -> pd.DataFrame:
