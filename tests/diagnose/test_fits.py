@@ -9,7 +9,7 @@ import pytest
 from tendonlab import _core
 from tendonlab.diagnose import floor as noise
 from tendonlab.diagnose.fits import Fitter
-from tendonlab.diagnose.search import Bar, Trial, _probabilities
+from tendonlab.diagnose.rounds import Bar, Trial, _probabilities
 
 
 @pytest.fixture(scope="module")
