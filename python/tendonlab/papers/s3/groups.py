@@ -134,8 +134,7 @@ def to_dataset(
     gate are known; friction coefficient and threshold have the sd `uncertain` over value that an earlier fit left, or
     the friction coefficient counts as known too.
 
-    Pretension and wrap angle are conditions of each experiment. Only the turn of the sheath enters, not how it is
-    spread: its curvature counts as the same from both ends."""
+    Pretension, wrap angle and unevenness of the shape are conditions of each experiment."""
     rig = assumed_rig() if rig is None else rig
     si = p.system_parameters()
     known = {
@@ -145,10 +144,11 @@ def to_dataset(
         "cable_stiffness": rig.EA,
         "pretension": train[0].pretension,
         "wrap_angle": train[0].shape.wrap_angle,
+        "curvature_skew": train[0].shape.skew,
         **{key: si[key] for key in ("static_friction_coefficient", "stribeck_velocity", "threshold_slope")},
     }
     free = {key: si[key] for key in ("friction_coefficient", "threshold_velocity")}
-    parameters = {key: NominalParameter(value=value, sd=0.0, lower=0.0) for key, value in known.items()}
+    parameters = {key: NominalParameter(value=value, sd=0.0) for key, value in known.items()}
     for key, value in free.items():
         share = 0.0 if friction_known and key == "friction_coefficient" else uncertain
         parameters[key] = NominalParameter(value=value, sd=share * value, lower=0.0)
@@ -190,5 +190,9 @@ def _experiment(record: Record, split: str, index: int) -> Experiment:
         data=data,
         split=split,
         repeat=record.name,
-        conditions={"pretension": record.pretension, "wrap_angle": record.shape.wrap_angle},
+        conditions={
+            "pretension": record.pretension,
+            "wrap_angle": record.shape.wrap_angle,
+            "curvature_skew": record.shape.skew,
+        },
     )
