@@ -76,7 +76,7 @@ struct BowdenPair {
     at.preload = 2.0 * output_radius * pretension, at.skew = curvature_skew;
     const Sliding<T> seen = moved<0>(at);
     const T friction = answer(std::get<0>(slot), at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
-    if (!memory.begun) memory.own[0] = middle;
+    if (!memory.begun) memory.own[0] = memory.own[1] = memory.own[3] = middle;
     const T behind_gate =
         gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
     return {{spread(behind_gate, T(middle - smooth(seen)), seen, memory)}, {at, stretch}, {friction, torque}};
@@ -138,7 +138,6 @@ struct BowdenPair {
   T spread(T output, const T& middle, const Sliding<T>& seen, Memory& memory) const {
     each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
       T &held = memory.own[1], &before = memory.own[3];
-      if (!memory.begun) held = before = middle;
       held = law.held(held, before, middle, std::get<0>(slot).dry_level(seen));
       before = middle;
       output = output + law.share * (held - output);
