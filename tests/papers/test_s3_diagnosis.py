@@ -8,7 +8,6 @@ import tendonlab as tl
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3 import withheld
 
-
 BESIDE = {
     "sheath:viscous",
     "actuation:drive_inertia",
