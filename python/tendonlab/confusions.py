@@ -51,8 +51,13 @@ CONFUSIONS = (
         ("sheath:slack", "sheath:load_dependence"), "torques below and above 2 r T_s, at more than one pretension"
     ),
     Confusion(
-        ("sheath:presliding", "sheath:distributed_presliding", "sensor.output_torque:delay"),
+        ("sheath:presliding", "sheath:distributed_presliding", "cable:compliance", "sensor.output_torque:delay"),
         "partial reversals of the torque beside full ones, slow and fast",
+    ),
+    Confusion(
+        ("sheath:viscous", "sensor.output_torque:delay"),
+        "an output that is held or a load that is no spring: before a spring the torque rises with the velocity, and "
+        "less of it looks like later",
     ),
 )
 

@@ -11,7 +11,7 @@ from tendonlab import _core
 from tendonlab.diagnose import floor as noise
 from tendonlab.diagnose import notes
 from tendonlab.diagnose.fits import Fitter
-from tendonlab.diagnose.search import Bar, Trial, _probabilities
+from tendonlab.diagnose.rounds import Bar, Trial, _probabilities
 
 
 @pytest.fixture(scope="module")

@@ -55,7 +55,7 @@ def test_ceres_agrees_with_the_closed_form(seen: pd.DataFrame, rig: tl.System, T
     free = ["cable_stiffness"] if T_p else ["cable_stiffness", "pretension"]
     fitted = s4.fit_tensions(window, rig.with_parameters(off), free=free, tensions=["T22"], smooth=False)
     assert fitted.converged
-    print(fitted.values["cable_stiffness"]/closed.k-1, fitted.num_iterations)
+    print(fitted.values["cable_stiffness"] / closed.k - 1, fitted.num_iterations)
     assert fitted.values["cable_stiffness"] == pytest.approx(closed.k, rel=1e-8)
     if T_p is None:
         assert fitted.values["pretension"] == pytest.approx(closed.T_p, rel=1e-8)

@@ -7,8 +7,13 @@ namespace tendonlab::systems {
 ///   target = K_in tau_in - friction(v),   tau_out[k] = h target + (1 - h) tau_out[k-1],
 ///   h = tanh(s_v (v² - v_t²))/2 + 1/2   for a step of the 1 kHz control loop.
 /// K_in = r_out/r_in unless the sheath is bent unevenly. Velocities and torques of the sheath are those of the drive
-/// and of the output. The output before the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle
-/// (`sheath:presliding`) takes the place of the gate by its share. Axial stiffness and length cancel out of the torque.
+/// and of the output; the velocity less what only stretches the cables, where they have `cable:compliance`. The output
+/// before the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle (`sheath:presliding`) takes
+/// the place of the gate by its share. Axial stiffness and length cancel out of the torque of cables that do not
+/// stretch.
+///
+/// Of a shape's curvature the torque sees two numbers up to order (mu theta)³: the wrap angle and the mean angle turned
+/// along the sheath, which `curvature_skew` states as the linear curvature that has it.
 template <class T>
 struct BowdenPair {
   static constexpr std::string_view name = "bowden_pair",
@@ -17,9 +22,9 @@ struct BowdenPair {
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
   static constexpr bool sampled = true, commanded = false, plain_names = true;
-  static constexpr std::size_t carried = 3;    ///< output of the gate, torque that is held, travel of the drive
+  static constexpr std::size_t carried = 4;    ///< output of the gate, torque that is held and its input, travel
   static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
-  static constexpr std::array<Port, 1> ports{{{"sheath"}}};
+  static constexpr std::array<Port, 2> ports{{{"sheath"}, {"cable"}}};
   static constexpr std::array<Input, 2> inputs{
       {{"input_torque", "torque of the drive", Dimension::effort, true, Between::linear},
        {"input_velocity", "velocity of the drive", Dimension::flow, true, Between::linear}}};
@@ -28,14 +33,14 @@ struct BowdenPair {
   static constexpr std::array<std::string_view, 1> nominal{"sheath:capstan"};
 
   using Laws = typename Joined<transmission::Sheath, friction::All>::type;
-  std::tuple<Slot<T, Laws>> slot;
+  std::tuple<Slot<T, Laws>, Slot<T, transmission::Tendons>> slot;
   Chain<T, tendonlab::Laws<>> load;
   Chain<T, tendonlab::Laws<tendonlab::actuation::GainError, tendonlab::actuation::Offset,
                            tendonlab::actuation::DriveInertia>>
       actuation;
   std::array<Chain<T, sensing::All>, 1> sensor;
   T threshold_velocity, threshold_slope, input_radius, output_radius, sheath_length, cable_stiffness, pretension,
-      wrap_angle;
+      wrap_angle, curvature_skew;
 
   static constexpr auto parameters() {
     return std::tuple{
@@ -48,35 +53,33 @@ struct BowdenPair {
         parameter(&BowdenPair::output_radius, "output_radius", Dimension::length, Purpose::structure, 0.05, 1e-9, inf,
                   "radius of the load's pulley"),
         parameter(&BowdenPair::sheath_length, "sheath_length", Dimension::length, Purpose::structure, 1.0, 1e-9, inf,
-                  "length of a sheath; cancels out of the torque"),
+                  "length of a sheath; the torque sees it by the stretch of the cables alone"),
         parameter(&BowdenPair::cable_stiffness, "cable_stiffness", Dimension::force, Purpose::structure, 1e5, 1e-9, inf,
-                  "axial stiffness EA of a cable; cancels out of the torque"),
+                  "axial stiffness EA of a cable; the torque sees it by their stretch alone"),
         parameter(&BowdenPair::pretension, "pretension", Dimension::force, Purpose::condition, 100.0, 0.0, inf,
                   "pretension of each cable"),
         parameter(&BowdenPair::wrap_angle, "wrap_angle", Dimension::angle, Purpose::condition, 1.0, 0.0, inf,
-                  "angle that a sheath turns by on its whole length")};
+                  "angle that a sheath turns by on its whole length"),
+        parameter(&BowdenPair::curvature_skew, "curvature_skew", Dimension::ratio, Purpose::condition, 0.0, -3.0, 3.0,
+                  "how much more a sheath is bent towards the output, 0 for a shape that is the same from both ends")};
   }
   void prepare() {}
 
   template <class Inputs, class Memory>
-  Sample<T, 1, 1> evaluate(const Inputs& in, Memory& memory) const {
-    const auto& sheath = std::get<0>(slot);
-    const T torque = driving(in), velocity = in.template input<1>();
+  Sample<T, 1, 2> evaluate(const Inputs& in, Memory& memory) const {
+    const T torque = driving(in);
+    const Sliding<T> stretch = stretching(in), lost = moved<1>(stretch);
+    const T velocity = lost_motion() ? T(in.template input<1>() - lost.velocity) : in.template input<1>();
     T& travel = memory.own[2];
     travel = travel + in.dt * velocity;
     Sliding<T> at = sliding(velocity, travel, T((output_radius / input_radius) * torque), wrap_angle);
-    at.preload = 2.0 * output_radius * pretension;
-    const Sliding<T> seen = moved(at);
-    const T friction = answer(sheath, at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
-    if (!memory.begun) memory.own = {middle, middle, travel};
-    T output = gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
-    each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
-      memory.own[1] = law.held(memory.own[1], middle, sheath.dry_level(seen));
-      T smooth{};
-      sheath.template each<role::force>([&](const auto& other) { smooth = smooth + other.force(seen); });
-      output = output + law.share * (memory.own[1] - smooth - output);
-    });
-    return {{output}, {at}, {friction}};
+    at.preload = 2.0 * output_radius * pretension, at.skew = curvature_skew;
+    const Sliding<T> seen = moved<0>(at);
+    const T friction = answer(std::get<0>(slot), at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
+    if (!memory.begun) memory.own[0] = memory.own[1] = memory.own[3] = middle;
+    const T behind_gate =
+        gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
+    return {{spread(behind_gate, T(middle - smooth(seen)), seen, memory)}, {at, stretch}, {friction, torque}};
   }
 
  private:
@@ -97,10 +100,25 @@ struct BowdenPair {
       if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Law>) f(law);
     });
   }
-  /// What the laws see behind those that change it.
+  /// What the laws of slot i see behind those that change it.
+  template <std::size_t i>
   Sliding<T> moved(Sliding<T> at) const {
-    std::get<0>(slot).template each<role::motion>([&](const auto& law) { at = law.motion(at); });
+    std::get<i>(slot).template each<role::motion>([&](const auto& law) { at = law.motion(at); });
     return at;
+  }
+  bool lost_motion() const { return std::get<1>(slot).active != 0; }
+  /// How far cables that stretch on their whole length would do so, as an angle of the drive.
+  template <class Inputs>
+  Sliding<T> stretching(const Inputs& in) const {
+    const T per_torque = sheath_length / (2.0 * cable_stiffness * square(input_radius)),
+            torque = in.template input<0>();
+    return sliding(T(per_torque * in.template slope<0>()), T(per_torque * torque), torque);
+  }
+  /// Friction of the sheath that has no memory and no edge.
+  T smooth(const Sliding<T>& seen) const {
+    T sum{};
+    std::get<0>(slot).template each<role::force>([&](const auto& law) { sum = sum + law.force(seen); });
+    return sum;
   }
   /// K_in over the ratio of radii: 1 but for a sheath that is bent unevenly.
   T gain(const Sliding<T>& seen) const {
@@ -114,6 +132,17 @@ struct BowdenPair {
     T kept = transmission::VelocityGate<T>{threshold_velocity, threshold_slope}.kept(velocity, periods);
     std::get<0>(slot).template each<role::memory>([&](const auto& law) { kept = law.dry_share() * kept; });
     return before = transmission::follow(target, before, kept);
+  }
+  /// The output where presliding is spread along the cable, whose dry friction acts about `middle`.
+  template <class Memory>
+  T spread(T output, const T& middle, const Sliding<T>& seen, Memory& memory) const {
+    each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
+      T &held = memory.own[1], &before = memory.own[3];
+      held = law.held(held, before, middle, std::get<0>(slot).dry_level(seen));
+      before = middle;
+      output = output + law.share * (held - output);
+    });
+    return output;
   }
 };
 }  // namespace tendonlab::systems

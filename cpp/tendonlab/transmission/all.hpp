@@ -1,6 +1,7 @@
 #pragma once
 #include "tendonlab/transmission/asymmetry.hpp"
 #include "tendonlab/transmission/backlash.hpp"
+#include "tendonlab/transmission/cable_stretch.hpp"
 #include "tendonlab/transmission/capstan.hpp"
 #include "tendonlab/transmission/compliance.hpp"
 #include "tendonlab/transmission/curvature_skew.hpp"
@@ -22,6 +23,8 @@ using Contacts = Laws<Capstan, Stribeck, Asymmetry>;
 using Pull = Laws<TautCompliance, ToeRegion, Ripple, Hold>;
 /// Of pretensioned tendons in sheaths.
 using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack, DistributedPresliding>;
+/// Of those tendons themselves.
+using Tendons = Laws<CableStretch>;
 /// Every law of the group.
 using Every = Joined<All, Contacts, Pull>::type;
 }  // namespace tendonlab::transmission

@@ -4,32 +4,62 @@
 namespace tendonlab::transmission {
 /// Presliding spread along an elastic cable: at a reversal the cable gives way from its input on, and the output is
 /// held until the friction of the whole sheath has turned over. A play in torque, where the gate of S3 is one in
-/// velocity.
+/// velocity; its corner is round, since the last friction turns over while the output moves already.
 ///
-///   y[k] = min(max(y[k-1], m - g), m + g),   tau -> (1 - a) tau + a (y - F)          (play operator, S4)
+///   s (m[k] - m[k-1]) = d + w (1 - exp(-d/rho)),   w = g - s (m[k-1] - y)   (balance of a Dahl bristle, elastic load)
+///   y -> y + s d,   tau -> (1 - a) tau + a y
 ///
-/// m: output torque without friction, g: dry friction level, F: friction that has no memory, N·m (N). a: share of it;
-/// 1: no gate. a = 0 switches it off. Memory: y, kept by the system.
+/// m: output torque without dry friction, N·m (N), s: the sense in which it changes, g: dry friction level, w: friction
+/// that has yet to turn over, d: rise of the output. rho: rise within which all but 1/e of w turns over; at a load of
+/// stiffness K and a breakaway displacement z it is K z, and rho -> 0 is the play operator of S4. a: share of it; 1: no
+/// gate. a = 0 switches it off. Memory: y and m, kept by the system.
 template <class T>
 struct DistributedPresliding {
-  static constexpr std::string_view name = "distributed_presliding", source = "S4 play operator, in torque",
-                                    equation = "(1 - a) tau + a (y - F), y = min(max(y, m - g), m + g)",
+  static constexpr std::string_view name = "distributed_presliding", source = "S3 sec. 2, S4 play operator, in torque",
+                                    equation =
+                                        "(1 - a) tau + a y, y += s d, s dm = d + w (1 - exp(-d/rho)), w = g - s (m - "
+                                        "y)",
                                     summary =
                                         "presliding spread along the cable: the output is held until the friction of "
                                         "the whole sheath has turned over";
   static constexpr unsigned roles = role::refines, sees = sees_nothing;
-  T share;
+  T turnover_rise, share;
 
   static constexpr auto parameters() {
-    return std::tuple{parameter(&DistributedPresliding::share, "distributed_share", Dimension::ratio,
-                                Purpose::amplitude, 1.0, 0.0, 1.0, "share of the output that is held by torque")};
+    return std::tuple{
+        parameter(&DistributedPresliding::turnover_rise, "turnover_rise", Dimension::effort, Purpose::shape, 0.01, 1e-9,
+                  inf, "rise of the output within which all but 1/e of the last friction turns over"),
+        parameter(&DistributedPresliding::share, "distributed_share", Dimension::ratio, Purpose::amplitude, 1.0, 0.0,
+                  1.0, "share of the output that is held by torque")};
   }
-  /// y after a sample in which friction of `level` acts about `middle`.
+  /// y after `before`, when the torque without dry friction of `level` went on from `from` to `to`.
   template <class S>
-  S held(const S& previous, const S& middle, const S& level) const {
-    const S least = middle - level, most = middle + level;
-    const S above = select(plain(previous) < plain(least), least, previous);
-    return select(plain(above) > plain(most), most, above);
+  S held(const S& before, const S& from, const S& to, const S& level) const {
+    const double sense = plain(to) < plain(from) ? -1.0 : 1.0;
+    const S friction = limited(S(from - before), level);  // what is more than the level has slipped
+    return from - friction + sense * rise(S(sense * (to - from)), S(level - sense * friction));
+  }
+
+ private:
+  template <class S>
+  static S limited(const S& friction, const S& level) {
+    const S above = select(plain(friction) < -plain(level), -level, friction);
+    return select(plain(above) > plain(level), level, above);
+  }
+  /// d at a rise of the input. What it solves is concave: Newton's steps climb to the root from below.
+  template <class S>
+  S rise(const S& input, const S& left) const {
+    constexpr int most = 200;  // steps of one rho each, where rho is next to nothing
+    const double in = plain(input), w = plain(left), rho = plain(turnover_rise);
+    double d = std::max(0.0, in - w), slope = 1.0;
+    for (int i = 0; i < most; ++i) {
+      const double turning = w * std::exp(-d / rho);
+      slope = 1.0 + turning / rho;
+      const double step = (in - d - (w - turning)) / slope;
+      d += step;
+      if (!(step > 1e-15 * (in + rho))) break;
+    }
+    return d + (input - d - left * (1.0 - exp(-d / turnover_rise))) / slope;  // one more carries the derivatives
   }
 };
 }  // namespace tendonlab::transmission

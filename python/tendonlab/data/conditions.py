@@ -11,26 +11,30 @@ from tendonlab.data.read import MissingColumnError, read_columns
 from tendonlab.data.schema import Table
 from tendonlab.errors import DatasetError, ParameterError
 
+OF_SHAPE = ("wrap_angle", "curvature_skew")  # conditions that a shape stands for
+
 
 def read_conditions(experiment: Table, *, folder: Path, info: SystemInfo) -> dict[str, float]:
     """The conditions as numbers. `shape`, where the system has a `wrap_angle`, names a file of marker coordinates
-    `x,y[,z]`, m, in their order along the sheath, and stands for the wrap angle of the spline through them (S3 eq. 5).
+    `x,y[,z]`, m, in their order from the drive to the load, and stands for the wrap angle and the unevenness of the
+    spline through them (S3 eq. 5); with `marker_sd`, m, beside it the spline is smoothed by that noise.
 
-    Raises DatasetError: no number, no such file, markers without a direction, shape and wrap angle together."""
+    Raises DatasetError: no number, no such file, markers without a direction, a shape beside what it stands for."""
     given = experiment.table("conditions", optional=True)
     has_shape = "shape" in given.values and any(p.name == "wrap_angle" for p in info.parameters)
     if not has_shape:
         return experiment.numbers("conditions")
-    if "wrap_angle" in given.values:
-        raise given.error("shape", "stands beside wrap_angle; expected one of them")
+    for name in OF_SHAPE:
+        if name in given.values:
+            raise given.error("shape", f"stands beside {name}; expected one of them")
     numbers = {name: given.number(name) for name in given.values if name != "shape"}
-    return {**numbers, "wrap_angle": _wrap_angle(given, folder)}
+    smoothing = given.number("marker_sd", 0.0, lower=0.0)
+    return {**numbers, **_shape(folder, given.text("shape"), smoothing=smoothing)}
 
 
-def _wrap_angle(given: Table, folder: Path) -> float:
+def _shape(folder: Path, file: str, *, smoothing: float) -> dict[str, float]:
     from tendonlab.procedures.markers import MarkerSpline  # loads scipy's splines, which few datasets need
 
-    file = given.text("shape")
     try:
         columns = read_columns(folder / file, ["x", "y", "z"])
     except MissingColumnError as error:
@@ -38,6 +42,7 @@ def _wrap_angle(given: Table, folder: Path) -> float:
             raise
         columns = read_columns(folder / file, ["x", "y"])
     try:
-        return MarkerSpline(np.column_stack(list(columns.values.values()))).wrap_angle()
+        shape = MarkerSpline(np.column_stack(list(columns.values.values())), smoothing=smoothing).shape()
     except (DatasetError, ParameterError) as error:
         raise DatasetError(f"{file}: {error}") from error
+    return {"wrap_angle": shape.wrap_angle, "curvature_skew": shape.skew}

@@ -110,11 +110,11 @@ def _invisible(found: Search) -> tuple[str, ...]:
 
 
 def _next(case: Case, floor: Floor, found: Search) -> list[dict[str, Any]]:
-    """Between the two leading explanations of the first round, with what was found beside them left out."""
-    if not found.rounds or found.rounds[0].accepted is None:
+    """Between the first effect and what comes next to it in its place."""
+    if not found.rounds or (own := found.rounds[0].accepted) is None:
         return []
-    trials = found.rounds[0].trials
-    return advise(case, floor, trials[0].fitted, trials[1].fitted if len(trials) > 1 else found.null)
+    others = [trial.fitted for trial in found.rounds[0].trials if trial is not own]
+    return advise(case, floor, own.fitted, others[0] if others else found.null)
 
 
 def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:

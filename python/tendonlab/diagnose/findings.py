@@ -11,7 +11,8 @@ from tendonlab.diagnose import heldout
 from tendonlab.diagnose.fits import Fitter
 from tendonlab.diagnose.heldout import Replayed
 from tendonlab.diagnose.result import EffectFinding
-from tendonlab.diagnose.search import Search, Trial
+from tendonlab.diagnose.rounds import Trial
+from tendonlab.diagnose.search import Search
 from tendonlab.errors import NumericalError
 
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from tendonlab.diagnose.confirm import NEAR_FLOOR
 from tendonlab.diagnose.floor import Floor
-from tendonlab.diagnose.search import MATTERS, Round, Search
+from tendonlab.diagnose.rounds import MATTERS, Round
+from tendonlab.diagnose.search import Search
 
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 10.0  # mean square, in units of a floor that is only assumed, from which on it is no noise
@@ -36,7 +37,7 @@ def decide(found: Search, *, nominal: float, refitted: float, explained: float |
     nothing_to_tune = floor.repeated and NEAR_FLOOR > found.null.mean_square > (1 - MATTERS) * nominal
     at_floor = nominal < NO_GAP or (nothing_to_tune and not found.selected)
     room = NEAR_FLOOR - found.null.mean_square if floor.repeated else min(SOFT, FAR - refitted)
-    none = found.rounds[0].probability[None] if found.rounds else 1.0
+    none = float(np.prod([one.probability[None] for one in found.rounds[: max(1, len(found.selected))]]))
     weight = {
         "no_gap": _step(SOFT if at_floor else NO_GAP - nominal) * (1.0 if not found.selected else none),
         "parameters_only": _step(nominal - NO_GAP) * none * _step(room),
@@ -62,23 +63,20 @@ def _step(x: float) -> float:
 
 
 def _marginals(rounds: Sequence[Round]) -> tuple[dict[str, float], list[dict[str, Any]]]:
-    """Each round's probabilities, weighted by that of getting there."""
+    """Probabilities of effects, each beside the others, and of sets; of a further effect only as far as those that were
+    selected are the cause."""
+    chosen = [one.probability[one.accepted.effect] if one.accepted else 1.0 for one in rounds]
     effects: dict[str, float] = {}
     sets: list[dict[str, Any]] = []
-    reach, before = 1.0, list[str]()
     for k, one in enumerate(rounds):
-        goes_on = k + 1 < len(rounds)
+        beside = float(np.prod(chosen[:k] + chosen[k + 1 :]))
         for name, p in one.probability.items():
             if name is not None:
-                effects[name] = max(effects.get(name, 0.0), min(1.0, effects.get(name, 0.0) + reach * p))
-            if name is None and before:
-                sets.append({"effects": list(before), "probability": reach * p})
-            elif name is not None and not (goes_on and one.accepted is not None and name == one.accepted.effect):
-                sets.append({"effects": [*before, name], "probability": reach * p})
-        if one.accepted is None:
-            break
-        reach *= one.probability[one.accepted.effect]
-        before.append(one.accepted.effect)
+                effects[name] = min(1.0, effects.get(name, 0.0) + (p if one.accepted else beside * p))
+            together = [*one.base, *([name] if name is not None else [])]
+            is_own = one.accepted is not None and name == one.accepted.effect
+            if together and not (is_own and k + 1 < len(rounds)):  # all that were selected together count once
+                sets.append({"effects": together, "probability": beside * p})
     sets.sort(key=lambda s: -float(s["probability"]))
     return effects, [s for s in sets if s["probability"] > 1e-4][:12]
 

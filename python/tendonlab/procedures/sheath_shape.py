@@ -40,6 +40,18 @@ class Shape:
         """theta, rad."""
         return float(self.turning[-1])
 
+    @property
+    def skew(self) -> float:
+        """How unevenly it is bent, in [-3, 3]: above 0 more towards the load, 0 for a shape that is the same from both
+        ends. Of a curvature that changes linearly it is `skew` of `skewed`; any other shape has that of the linear one
+        with its mean angle turned, 3 (1 - 2 <phi>/theta), which is all that its transmission shows up to order
+        (mu theta)³ (S3 eq. 11, 14, 18)."""
+        if self.wrap_angle == 0.0:
+            return 0.0
+        turned = self.turning / self.wrap_angle
+        twice_mean = float((turned[1:] + turned[:-1]) @ np.diff(self.arc_length)) / self.length
+        return min(max(3.0 * (1.0 - twice_mean), -3.0), 3.0)
+
     @classmethod
     def even(cls, wrap_angle: float, *, length: float, num_samples: int = 501) -> Shape:
         """Constant curvature over the whole `length`, m."""

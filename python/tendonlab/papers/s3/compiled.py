@@ -60,5 +60,6 @@ def bowden_pair(p: FrictionParameters, *, record: Record, rig: Rig | None = None
     own = {
         "input_radius": rig.r_in, "output_radius": rig.r_out, "sheath_length": rig.L, "cable_stiffness": rig.EA,
         "pretension": record.pretension, "wrap_angle": record.shape.wrap_angle,
+        "curvature_skew": record.shape.skew,
     }  # fmt: skip
     return System(kind="bowden_pair", effects=("sheath:capstan",), parameters={**p.system_parameters(), **own})

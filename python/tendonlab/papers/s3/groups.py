@@ -127,15 +127,14 @@ def to_dataset(
     name: str = "s3-twin",
     uncertain: float = 0.03,
     friction_known: bool = False,
-    viscous: float | None = None,
+    viscous: bool = False,
     rig: Rig | None = None,
 ) -> Dataset:
     """Records as a library dataset of kind `bowden_pair` whose simulator holds `p`: geometry and the steepness of the
     gate are known; friction coefficient and threshold have the sd `uncertain` over value that an earlier fit left, or
-    the friction coefficient counts as known too.
+    the friction coefficient counts as known too. With `viscous` it has a viscous friction of which nothing is known.
 
-    Pretension and wrap angle are conditions of each experiment. Only the turn of the sheath enters, not how it is
-    spread: its curvature counts as the same from both ends."""
+    Pretension, wrap angle and unevenness of the shape are conditions of each experiment."""
     rig = assumed_rig() if rig is None else rig
     si = p.system_parameters()
     known = {
@@ -145,22 +144,23 @@ def to_dataset(
         "cable_stiffness": rig.EA,
         "pretension": train[0].pretension,
         "wrap_angle": train[0].shape.wrap_angle,
+        "curvature_skew": train[0].shape.skew,
         **{key: si[key] for key in ("static_friction_coefficient", "stribeck_velocity", "threshold_slope")},
     }
     free = {key: si[key] for key in ("friction_coefficient", "threshold_velocity")}
-    parameters = {key: NominalParameter(value=value, sd=0.0, lower=0.0) for key, value in known.items()}
+    parameters = {key: NominalParameter(value=value, sd=0.0) for key, value in known.items()}
     for key, value in free.items():
         share = 0.0 if friction_known and key == "friction_coefficient" else uncertain
         parameters[key] = NominalParameter(value=value, sd=share * value, lower=0.0)
-    if viscous is not None:
-        parameters["sheath_viscous"] = NominalParameter(value=viscous, sd=uncertain * viscous, lower=0.0)
+    if viscous:
+        parameters["sheath_viscous"] = NominalParameter(value=0.0, lower=0.0)
     split = [(record, "train") for record in train] + [(record, "test") for record in test]
     return Dataset(
         name=name,
         description="Reconstructed twin of S3: a chain of friction nodes under the paper's trajectories.",
         kind="bowden_pair",
         axis="rotary",
-        nominal_effects=("sheath:capstan",) if viscous is None else ("sheath:capstan", "sheath:viscous"),
+        nominal_effects=("sheath:capstan", "sheath:viscous") if viscous else ("sheath:capstan",),
         parameters=parameters,
         controller=None,
         signals=_signals(),
@@ -190,5 +190,9 @@ def _experiment(record: Record, split: str, index: int) -> Experiment:
         data=data,
         split=split,
         repeat=record.name,
-        conditions={"pretension": record.pretension, "wrap_angle": record.shape.wrap_angle},
+        conditions={
+            "pretension": record.pretension,
+            "wrap_angle": record.shape.wrap_angle,
+            "curvature_skew": record.shape.skew,
+        },
     )

@@ -38,6 +38,11 @@ class BumpShape:
         """theta = 4 phi, rad."""
         return 4.0 * self.phi
 
+    @property
+    def skew(self) -> float:
+        """0: the shape is the same from both ends."""
+        return 0.0
+
     def turning(self, arc_length: np.ndarray) -> np.ndarray:
         """phi(s), rad: the variation of psi up to s, m."""
         quarter = 4.0 * np.asarray(arc_length, dtype=float) / self.length
