@@ -148,7 +148,7 @@ class Identification:
         return ax
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain types, without the residuals."""
+        """Plain types, without the residuals; None for what nothing bounds."""
         rows: Mapping[str, Mapping[str, Any]] = self.parameters.to_dict(orient="index")  # type: ignore[assignment]
         return {
             "system": self.system.to_dict(),
@@ -161,9 +161,9 @@ class Identification:
                 name: {
                     "value": row["value"],
                     "nominal": row["nominal"],
-                    "sd": row["sd"],
+                    "sd": _bounded(row["sd"]),
                     "unit": row["unit"],
-                    "ci95": [row["ci95_lower"], row["ci95_upper"]],
+                    "ci95": [_bounded(row["ci95_lower"]), _bounded(row["ci95_upper"])],
                     "at_bound": bool(row["at_bound"]),
                     "informed": bool(row["informed"]),
                 }
@@ -194,3 +194,7 @@ class Identification:
     def _require(self, name: str) -> None:
         if name not in self.parameters.index:
             raise ParameterError(f"{name!r} was not fitted; {nearest(name, [str(n) for n in self.parameters.index])}")
+
+
+def _bounded(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
