@@ -20,6 +20,8 @@ from tendonlab.system import System
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+HARDLY = 0.9  # of an output's rms about its mean: a fit that leaves more explains next to nothing of it
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Problem:
@@ -67,14 +69,16 @@ class Identification:
     `parameters`: indexed by name; value, nominal (0 where the simulator had none), sd, ci95_lower, ci95_upper, unit,
     at_bound, informed. Where no measured sample depends on a parameter, it is not informed: held at its nominal value,
     with the sd and interval of its prior. `correlations`: of the free parameters' coordinates. `residuals`: for each
-    experiment a frame by time, s, with a column an output, in noise sd. `initial`: fitted initial states by experiment.
-    `system`: the simulator with the fitted values. `cost`: half the sum of squared residuals, priors included.
-    `warnings`: those of the dataset."""
+    experiment a frame by time, s, with a column an output, in noise sd. `errors`: by output, over all experiments;
+    rms_error, and beside it spread, the rms of what was measured about its mean in each experiment, both in unit.
+    `initial`: fitted initial states by experiment. `system`: the simulator with the fitted values. `cost`: half the sum
+    of squared residuals, priors included. `warnings`: those of the dataset."""
 
     system: System
     parameters: pd.DataFrame
     correlations: pd.DataFrame = field(repr=False)
     residuals: dict[str, pd.DataFrame] = field(repr=False)
+    errors: pd.DataFrame = field(repr=False)
     initial: dict[str, dict[str, float]] = field(repr=False)
     noise_sd: dict[str, float] = field(repr=False)
     cost: float
@@ -99,6 +103,12 @@ class Identification:
     def not_informed(self) -> tuple[str, ...]:
         """Parameters that these data say nothing about."""
         return tuple(str(name) for name in self.parameters.index[~self.parameters["informed"]])
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """Outputs that the fit predicts hardly better than a constant in each experiment would."""
+        rows = self.errors.iterrows()
+        return tuple(str(name) for name, row in rows if row["rms_error"] > HARDLY * row["spread"] > 0)
 
     def ci95(self, name: str) -> tuple[float, float]:
         """Interval that holds the parameter in 95 % of such data. Raises ParameterError for one that was not fitted."""
@@ -169,6 +179,7 @@ class Identification:
                 }
                 for name, row in rows.items()
             },
+            "errors": self.errors.to_dict(orient="index"),
             "correlations": self.correlations.to_dict(),
             "initial": self.initial,
             "noise_sd": self.noise_sd,
@@ -177,15 +188,17 @@ class Identification:
 
     def __repr__(self) -> str:
         state = "converged" if self.converged else f"not converged: {self.message}"
+        state += f", hardly better than a constant: {', '.join(self.missed)}" if self.missed else ""
         fitted = self.parameters[self.parameters["informed"]].iterrows()
         shown = ", ".join(f"{n} = {r['value']:.4g} ± {r['sd']:.2g} {r['unit']}" for n, r in fitted)
         return f"Identification({self.system.kind}, {state}; {shown}{self._silence('; ')})"
 
     def _repr_html_(self) -> str:
         state = "converged" if self.converged else f"<b>not converged</b>: {escape(self.message)}"
-        table = self.parameters.to_html(float_format=lambda v: f"{v:.4g}")
+        state += f"; <b>hardly better than a constant</b>: {', '.join(self.missed)}" if self.missed else ""
+        tables = (table.to_html(float_format=lambda v: f"{v:.4g}") for table in (self.parameters, self.errors))
         notes = "".join(f"<li>{escape(warning)}</li>" for warning in self.warnings)
-        return f"<p>{state}{escape(self._silence('; '))}</p>{table}<ul>{notes}</ul>"
+        return f"<p>{state}{escape(self._silence('; '))}</p>{''.join(tables)}" + (f"<ul>{notes}</ul>" if notes else "")
 
     def _silence(self, before: str) -> str:
         held = ", ".join(self.not_informed)

@@ -13,6 +13,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from tendonlab import _core, priors
+from tendonlab.catalog import unit
 from tendonlab.data import require_dataset
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identification import Identification, Problem
@@ -215,6 +216,7 @@ def _result(
         residuals={
             e.name: _residual_frame(e, r, system, noise) for e, r in zip(ready, found["residuals"], strict=True)
         },
+        errors=_errors(ready, found["residuals"], system, noise),
         initial={
             e.name: {f"{kind} of axis {j}": v for (kind, j), v in zip(e.initial, z, strict=True)}
             for e, z in zip(ready, found["initial"], strict=True)
@@ -228,6 +230,23 @@ def _result(
         warnings=dataset.warnings,
         problem=problem.at(found["values"], found["initial"]),
     )
+
+
+def _errors(
+    ready: Sequence[Prepared], residuals: Sequence[np.ndarray], system: System, noise: dict[str, float]
+) -> pd.DataFrame:
+    """Rms error and spread of each output that was measured, in its unit."""
+    frames = [_residual_frame(e, r, system, noise) for e, r in zip(ready, residuals, strict=True)]
+    rows = {}
+    for c, output in enumerate(system.info.outputs):
+        if output.name not in noise:
+            continue
+        missed = np.concatenate([f[output.name].to_numpy() * noise[output.name] for f in frames if output.name in f])
+        seen = [e.measured[c] for e in ready if np.isfinite(e.measured[c]).any()]
+        moved = np.concatenate([y - np.nanmean(y) for y in seen])
+        errors = [float(np.sqrt(np.nanmean(np.square(y)))) for y in (missed, moved)]
+        rows[output.name] = (*errors, unit(output.dimension, system.axis))
+    return pd.DataFrame.from_dict(rows, orient="index", columns=["rms_error", "spread", "unit"])
 
 
 def _residual_frame(ready: Prepared, residual: np.ndarray, system: System, noise: dict[str, float]) -> pd.DataFrame:

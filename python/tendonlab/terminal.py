@@ -149,8 +149,19 @@ def identification_text(fit: Identification) -> str:
     state = "Converged" if fit.converged else f"NOT converged: {fit.message}"
     told = f"{state} after {fit.num_iterations} iterations, {len(fit.residuals)} experiments fitted together."
     tied = _items("Hard to tell apart", _correlated(fit))
-    parts = [wrapped(told), table(rows, right=(1, 2)), tied, _items("Notes", fit.warnings)]
+    parts = [wrapped(told), table(rows, right=(1, 2)), _fit_errors(fit), tied, _items("Notes", fit.warnings)]
     return "\n\n".join(part for part in parts if part)
+
+
+def _fit_errors(fit: Identification) -> str:
+    """What the fit leaves of each output, beside how much it moves; and what to do where it leaves all of it."""
+    rows = [["signal", "unit", "RMS error", "RMS about its mean"]]
+    for signal, row in fit.errors.iterrows():
+        factor, unit = prefixed([row["rms_error"], row["spread"]], str(row["unit"]))
+        rows.append([str(signal), unit, number(factor * row["rms_error"]), number(factor * row["spread"])])
+    advice = "is predicted hardly better than by a constant; other nominal values or more starts may find a better fit"
+    doubt = "\n".join(wrapped(f"{name} {advice}", indent="  ") for name in fit.missed)
+    return "\n".join(part for part in ("Error of the fit", table(rows, right=(2, 3)), doubt) if part)
 
 
 def _correlated(fit: Identification) -> list[str]:

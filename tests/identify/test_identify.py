@@ -242,6 +242,29 @@ def test_records_of_a_few_samples_are_fitted_with_what_they_say() -> None:
     assert (found.parameters["sd"] > 0).all()
 
 
+def test_a_fit_says_how_near_it_came(fit: Any) -> None:
+    """The noise is all that is left, of an angle that moves by much more."""
+    error, spread, unit = fit.errors.loc["joint_angle"]
+    seen = [e.data["joint_angle"] for e in rig()]
+    assert error == pytest.approx(NOISE, rel=0.06)
+    assert spread == pytest.approx(np.sqrt(np.mean(np.concatenate([y - y.mean() for y in seen]) ** 2)))
+    assert unit == "rad"
+    assert fit.missed == ()
+    assert fit.to_dict()["errors"]["joint_angle"]["rms_error"] == error
+
+
+def test_a_fit_that_explains_nothing_says_so_even_where_it_converged() -> None:
+    """Friction that nothing overcomes: the joint stands still, and no small change of a value moves it."""
+    stuck = {name: NominalParameter(value, 0.0) for name, value in NOMINAL.items()}
+    stuck |= {"coulomb": NominalParameter(50.0, 0.0), "viscous": NominalParameter(0.4, 0.1)}
+    found = identify(rig(**stuck), progress=False)
+    assert found.converged
+    assert found.missed == ("joint_angle",)
+    assert "hardly better than a constant: joint_angle" in repr(found)
+    assert "hardly better than a constant</b>: joint_angle" in found._repr_html_()
+    assert "joint_angle is predicted hardly better than by a constant" in " ".join(identification_text(found).split())
+
+
 def test_what_cannot_be_identified_is_told(fit: Any) -> None:
     with pytest.raises(ParameterError, match="joint:stribek"):
         identify(rig(), effects=["joint:stribek"], progress=False)
