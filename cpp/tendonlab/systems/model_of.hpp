@@ -69,10 +69,11 @@ SystemInfo describe() {
     const systems::Holder holder{element, Law::name, systems::PartnerOf<Law>::name};
     for_each_parameter<Law>([&](const auto& p) {
       const auto& owner = info.parameters[*systems::place_of(info.parameters, holder, p.name)];
+      const std::string holding = owner.element + ":" + owner.effect;
       if (owner.effect == Law::name)
         effect.parameters.push_back(owner.name);
-      else
-        effect.needs.push_back(owner.element + ":" + owner.effect);
+      else if (!systems::is_structural<System>(holding))  // what is always there
+        effect.needs.push_back(holding);
     });
     info.effects.push_back(effect);
   });

@@ -12,13 +12,14 @@
 #include "tendonlab/transmission/slack.hpp"
 #include "tendonlab/transmission/stribeck.hpp"
 #include "tendonlab/transmission/taut_compliance.hpp"
+#include "tendonlab/transmission/toe_region.hpp"
 
 namespace tendonlab::transmission {
 using All = Laws<Backlash, Compliance>;
 /// Friction of a cable on a pulley, stated by friction coefficients.
 using Contacts = Laws<Capstan, Stribeck, Asymmetry>;
 /// Of a drive that pulls pretensioned cables by a gear.
-using Pull = Laws<TautCompliance, Ripple, Hold>;
+using Pull = Laws<TautCompliance, ToeRegion, Ripple, Hold>;
 /// Of pretensioned tendons in sheaths.
 using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack, DistributedPresliding>;
 /// Every law of the group.
