@@ -46,6 +46,20 @@ def test_it_is_the_twin(effects: dict, twin: dict) -> None:
         assert np.max(error[~jumps]) < closeness[ours], ours
 
 
+def test_a_toe_makes_the_cables_as_soft_as_the_twins() -> None:
+    """A joint that hangs, so that gravity changes sides, preloaded to half of where the toe ends."""
+    rig = s2.constants().with_(phi=-np.pi / 2.0, T=100.0)
+    toe = {"cable:toe_region": {"toe_tension": 200.0}}
+    linear, soft = (
+        s2.system(rig).with_effects(effect).simulate(s2.nut_input(rig, PLAN), tolerance=1e-7)["joint_angle"]
+        for effect in ({}, toe)
+    )
+    straight, bent = (s2.simulate(rig, PLAN, toe_tension=tension)["theta"] for tension in (0.0, 200.0))
+    wanted = (bent - straight).to_numpy()
+    assert np.abs(wanted).max() > 2e-4
+    assert (soft - linear).to_numpy() == pytest.approx(wanted, abs=0.01 * np.abs(wanted).max())
+
+
 def test_half_the_twins_step_halves_the_difference() -> None:
     """So the difference is the twin's, not ours."""
     errors = []

@@ -68,11 +68,19 @@ struct Slot {
     each<role::factor>([&](const auto& law) { sum = sum * law.factor(at); });
     return sum;
   }
-  /// The part of the level that a bristle has not taken over: what can stick. Counts at rest.
+  /// What can stick: the part of the level that a bristle has not taken over, and what forces that ask for the
+  /// direction add along it. Counts at rest.
   template <class S>
   S stick_level(const Sliding<S>& at) const {
     S sum = dry_level(at);
     each<role::memory>([&](const auto& law) { sum = law.dry_share() * sum; });
+    each<role::force>([&](const auto& law) {
+      if constexpr ((std::decay_t<decltype(law)>::sees & sees_direction) != 0) {
+        Sliding<S> still = at;
+        still.direction = {};
+        sum = sum + at.direction * (law.force(at) - law.force(still));
+      }
+    });
     return sum;
   }
   /// Half of the gap that a law of motion leaves open, 0 without one.

@@ -8,8 +8,8 @@ namespace tendonlab::friction {
 ///   11)
 ///
 /// theta: signed wrap angle, rad. T: tension that `load` names, N. Each branch is continuous in theta. Half the sum of
-/// the directions is no friction but a tension that changes with theta; half their difference is. At rest the direction
-/// is that of the last motion. a = b = 0 switches it off. No memory.
+/// the directions is no friction but a tension that changes with theta; half their difference is, and sticks. A guide
+/// that inputs drive keeps at rest the direction of its last motion. a = b = 0 switches it off. No memory.
 template <class T>
 struct BushingBranches {
   static constexpr std::string_view name = "bushing_branches", source = "S2 eq. 11",

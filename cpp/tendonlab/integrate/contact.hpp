@@ -4,6 +4,10 @@
 
 namespace tendonlab::integrate {
 /// The modes of one system and the questions asked of them. Knows ports and laws' roles, no particular law.
+///
+/// A port at rest sticks while what pushes it is below its level in that direction, or else slides where it is pushed.
+/// Levels are functions of the state, not of what holds it, so there is always exactly one of these; but for a level
+/// below 0, of friction that would feed its motion: it never sticks, and of two senses takes the one it is pushed to.
 template <class System, class T>
 class Contact {
   static constexpr int n = System::dof, directions = System::directions, num_modes = modes<System>;
@@ -12,17 +16,22 @@ class Contact {
   using F = Frame<System, T>;
 
  public:
-  explicit Contact(const System& of) : system(of) {
+  template <class Inputs>
+  Contact(const System& of, const Inputs& in) : system(of) {
+    const bool driven = systems::is_driven<System>(in);
     for (int& port : representative) port = -1;
     unroll<slots<System>>([&](auto i) {
       constexpr auto port = System::ports[i];
       const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+      direction_of[i] = -1;
       if constexpr (port.direction >= 0) {
-        if (representative[port.direction] < 0) representative[port.direction] = i;
-        directed[port.direction] = directed[port.direction] || slot.directed();
-        dry[port.direction] = dry[port.direction] || slot.has(role::level);
-        prescribed[port.direction] = port.driven;
-        weightless[port.direction] = is_weightless(i);
+        const bool follows = driven && port.while_driven >= 0;
+        const int m = follows ? port.while_driven : port.direction;
+        direction_of[i] = m;
+        if (representative[m] < 0) representative[m] = i;
+        directed[m] = directed[m] || slot.directed();
+        prescribed[m] = port.driven || follows;
+        weightless[m] = is_weightless(i) && !prescribed[m];
       }
       if constexpr (port.side >= 0) {
         side_port[port.side] = i;
@@ -31,14 +40,16 @@ class Contact {
     });
   }
   bool guarded(int m) const { return m < directions ? directed[m] : gapped[m]; }
-  /// The port that stands for mode m.
-  int bearer(int m) const { return representative[m]; }
+  /// Does port i stick?
+  bool sticks(int i, const F& frame) const {
+    return direction_of[i] >= 0 && directed[direction_of[i]] && mode_of(direction_of[i], frame) == 0.0;
+  }
 
   /// Does mode m go straight from one direction to the other? Where its velocity is an input, and where what slides
   /// weighs next to nothing and cannot stick: the push on it at rest is nothing but rounding.
   template <class Inputs>
   bool only_turns(int m, const Y& y, const F& frame, const Inputs& in) const {
-    return prescribed[m] || (weightless[m] && stick_level(m, 1.0, y, frame, in) == 0.0);
+    return prescribed[m] || (weightless[m] && plain(breakaway(m, 1.0, y, frame, in).level) <= 0.0);
   }
 
   template <class Inputs>
@@ -86,7 +97,7 @@ class Contact {
   void hold(F& frame, const Geometry& geometry) const {
     int stuck[directions > 0 ? directions : 1], count = 0;
     for (int m = 0; m < directions; ++m)
-      if (directed[m] && frame.mode[m] == 0.0) stuck[count++] = m;
+      if (directed[m] && mode_of(m, frame) == 0.0) stuck[count++] = m;
     frame.holds = count > 0;
     if (!frame.holds) return;
     for (int j = 0; j < n; ++j)
@@ -96,55 +107,75 @@ class Contact {
 
   /// Efforts that hold the sticking ports at rest, one a mode (0 where it slides): positive pushes backwards.
   template <class Inputs>
-  std::array<double, directions> holding(const Y& y, const F& frame, const Inputs& in) const {
+  std::array<T, directions> holding(const Y& y, const F& frame, const Inputs& in) const {
     F free = frame;
     free.holds = false;
     const auto r = rate(system, y, free, in);
     const auto& geometry = this->geometry(y, frame, in);
-    std::array<double, directions> effort{};
-    double matrix[directions][directions + 1];
+    std::array<T, directions> effort{};
+    T matrix[directions][directions + 1];
     int index[directions] = {}, count = 0;
     for (int m = 0; m < directions; ++m)
-      if (directed[m] && frame.mode[m] == 0.0) index[count++] = m;
+      if (directed[m] && mode_of(m, frame) == 0.0) index[count++] = m;
     for (int a = 0; a < count; ++a) {
       for (int b = 0; b < count; ++b)
         matrix[a][b] = compliance(geometry, representative[index[a]], representative[index[b]]);
-      matrix[a][count] = plain(along(geometry, representative[index[a]], r.acceleration));
+      matrix[a][count] = along(geometry, representative[index[a]], r.acceleration);
     }
     for (int a = 0; a < count; ++a)
       for (int b = a + 1; b < count; ++b) {
-        const double f = matrix[b][a] / matrix[a][a];
-        for (int c = a; c <= count; ++c) matrix[b][c] -= f * matrix[a][c];
+        const T f = matrix[b][a] / matrix[a][a];
+        for (int c = a; c <= count; ++c) matrix[b][c] = matrix[b][c] - f * matrix[a][c];
       }
     for (int a = count - 1; a >= 0; --a) {
-      double sum = matrix[a][count];
-      for (int b = a + 1; b < count; ++b) sum -= matrix[a][b] * effort[index[b]];
-      effort[index[a]] = sum / matrix[a][a];
+      T sum = matrix[a][count];
+      for (int b = a + 1; b < count; ++b) sum = sum - matrix[a][b] * effort[static_cast<std::size_t>(index[b])];
+      effort[static_cast<std::size_t>(index[a])] = sum / matrix[a][a];
     }
     return effort;
   }
 
-  /// The level up to which mode m sticks when it is pushed along `direction`.
+  /// Where mode m breaks away: the level up to which it sticks, an effort at the port that stands for it, and what
+  /// friction then is at each of its ports.
+  struct Breakaway {
+    T level{};
+    std::array<T, slots<System>> force{};
+  };
   template <class Inputs>
-  double stick_level(int m, double direction, const Y& y, const F& frame, const Inputs& in) const {
+  Breakaway breakaway(int m, double direction, const Y& y, const F& frame, const Inputs& in) const {
     auto pushed = frame.mode;
-    pushed[m] = direction;
+    pushed[static_cast<std::size_t>(m)] = direction;
     const auto c = system.couple(y.at, pushed, in);
     const auto& geometry = geometry_of(system, c);
-    double sum = 0;
+    Breakaway at;
     unroll<slots<System>>([&](auto i) {
-      constexpr int bears = bearer_of(i);
       if constexpr (System::ports[i].direction >= 0)
-        if (System::ports[i].direction == m) {
-          const double level = plain(std::get<static_cast<std::size_t>(i)>(system.slot).stick_level(c.port[i]));
-          // ports of one mode may sit on different radii: what counts is the effort at the port that stands for it
-          if constexpr (bears == i)
-            sum += level;
-          else if (level > 0)
-            sum += level * reach<i>(geometry) / reach<bears>(geometry);
+        if (direction_of[i] == m) {
+          const T level = std::get<static_cast<std::size_t>(i)>(system.slot).stick_level(c.port[i]);
+          at.force[i] = c.port[i].direction * level;
+          // ports of one mode may sit on different radii
+          if (i == 0 || representative[m] == i)
+            at.level = at.level + level;
+          else if (plain(level) != 0.0)
+            at.level = at.level + level * radius(geometry, i, representative[m]);
         }
     });
-    return sum;
+    return at;
+  }
+  /// What friction adds to the force of each sticking port: together it holds them, each with the same share of what it
+  /// breaks away at.
+  template <class Inputs>
+  std::array<T, slots<System>> borne(const Y& y, const F& frame, const Inputs& in) const {
+    std::array<T, slots<System>> force{};
+    const auto push = holding(y, frame, in);
+    for (std::size_t m = 0; m < directions; ++m) {
+      if (!directed[m] || frame.mode[m] != 0.0) continue;
+      const auto edge = breakaway(static_cast<int>(m), plain(push[m]) < 0 ? -1.0 : 1.0, y, frame, in);
+      if (!(plain(edge.level) > 0)) continue;
+      const T share = abs(push[m]) / edge.level;
+      for (std::size_t i = 0; i < force.size(); ++i) force[i] = force[i] + share * edge.force[i];
+    }
+    return force;
   }
 
   /// To which side of its gap mode m has moved; 0 where it has none.
@@ -165,8 +196,8 @@ class Contact {
         return mode == 0.0 ? gap - toward * g : mode * g - gap;
       }
     if (mode != 0.0) return mode * plain(sliding_velocity(m, y, frame, in));
-    const double push = holding(y, frame, in)[static_cast<std::size_t>(m)];
-    const double level = stick_level(m, push < 0 ? -1.0 : 1.0, y, frame, in);
+    const double push = plain(holding(y, frame, in)[static_cast<std::size_t>(m)]);
+    const double level = plain(breakaway(m, push < 0 ? -1.0 : 1.0, y, frame, in).level);
     return level > 0 ? 1.0 - std::fabs(push) / level : -1.0;
   }
 
@@ -198,14 +229,14 @@ class Contact {
       double excess = 0;
       for (int m = 0; m < directions; ++m) {
         if (!directed[m] || frame.mode[m] != 0.0) continue;
-        const double direction = push[m] < 0 ? -1.0 : 1.0;
-        const double level = dry[m] ? stick_level(m, direction, y, frame, in) : 0.0;
-        const double over = std::fabs(push[m]) - level;
-        if (dry[m] && level > 0 ? over <= 1e-12 * level : false) continue;
+        const double effort = plain(push[static_cast<std::size_t>(m)]);
+        const double level = plain(breakaway(m, effort < 0 ? -1.0 : 1.0, y, frame, in).level);
+        const double over = std::fabs(effort) - level;
+        if (level > 0 && over <= 1e-12 * level) continue;
         if (worst < 0 || over > excess) worst = m, excess = over;
       }
       if (worst < 0) return;
-      frame.mode[worst] = push[worst] < 0 ? -1.0 : 1.0;
+      frame.mode[worst] = plain(push[worst]) < 0 ? -1.0 : 1.0;
       hold(frame, geometry);
     }
   }
@@ -228,31 +259,28 @@ class Contact {
     return sum;
   }
   template <class Geometry>
-  static double compliance(const Geometry& geometry, int a, int b) {
-    double sum = 0;
+  static T compliance(const Geometry& geometry, int a, int b) {
+    T sum(0.0);
     for (std::size_t j = 0; j < n; ++j)
-      sum += plain(geometry.lever[a][j]) * plain(geometry.inverse_inertia[j]) * plain(geometry.lever[b][j]);
+      sum = sum + geometry.lever[a][j] * geometry.inverse_inertia[j] * geometry.lever[b][j];
     return sum;
   }
+  static Plain<T> mode_of(int m, const F& frame) { return frame.mode[static_cast<std::size_t>(m)]; }
   /// Does port i move nothing but what has no inertia of its own?
   static constexpr bool is_weightless(int i) {
     bool light = systems::stated<System> < n;
     for (int j = 0; j < systems::stated<System>; ++j) light = light && !System::joined[i][j];
-    return light && !System::ports[static_cast<std::size_t>(i)].driven;
+    return light;
   }
-  /// The first port of the mode of port i: the one that stands for it.
-  static constexpr int bearer_of(int i) {
-    int first = 0;
-    while (System::ports[static_cast<std::size_t>(first)].direction !=
-           System::ports[static_cast<std::size_t>(i)].direction)
-      ++first;
-    return first;
-  }
-  template <int port, class Geometry>
-  static double reach(const Geometry& geometry) {
-    double square_sum = 0;
-    for (std::size_t j = 0; j < n; ++j) square_sum += square(plain(geometry.lever[port][j]));
-    return std::sqrt(square_sum);
+  /// The radius of port `a` over that of `b`, which moves with it.
+  template <class Geometry>
+  static T radius(const Geometry& geometry, int a, int b) {
+    T both(0.0), own(0.0);
+    for (std::size_t j = 0; j < n; ++j) {
+      both = both + geometry.lever[a][j] * geometry.lever[b][j];
+      own = own + geometry.lever[b][j] * geometry.lever[b][j];
+    }
+    return abs(T(both / own));
   }
   /// One more port at rest: keep -= (keep W g)(g' keep) / (g' keep W g). For a port on one axis the entry is exactly 0.
   template <class Geometry>
@@ -273,8 +301,7 @@ class Contact {
     }
   }
 
-  int representative[directions > 0 ? directions : 1] = {}, side_port[num_modes] = {};
-  bool directed[num_modes] = {}, dry[num_modes] = {}, gapped[num_modes] = {}, prescribed[num_modes] = {},
-       weightless[num_modes] = {};
+  int representative[directions > 0 ? directions : 1] = {}, side_port[num_modes] = {}, direction_of[slots<System>] = {};
+  bool directed[num_modes] = {}, gapped[num_modes] = {}, prescribed[num_modes] = {}, weightless[num_modes] = {};
 };
 }  // namespace tendonlab::integrate

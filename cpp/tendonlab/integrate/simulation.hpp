@@ -15,8 +15,8 @@ class Simulation {
   Simulation(const System& of, const Experiment& experiment, const Settings& with, Drive<T> inputs)
       : system(of),
         settings(with),
-        contact(of),
         drive(std::move(inputs)),
+        contact(of, drive),
         t(experiment.time.front()),
         end(experiment.time.back()) {
     h = std::min(1e-4, 0.1 * (end - t));
@@ -24,7 +24,8 @@ class Simulation {
   }
   Y y;  ///< the initial state before `run`, the final one after it
 
-  /// Integrates to the last sample, handing each accepted step to `record(step, start, length, taken, frame, drive)`.
+  /// Integrates to the last sample, handing each accepted step to `record(step, start, length, taken, contact, frame,
+  /// drive)`.
   template <class Record>
   void run(Trajectory& trajectory, Record&& record) {
     start();
@@ -60,7 +61,7 @@ class Simulation {
       }
       retakes = false;
       const double taken = first.mode >= 0 ? first.share * length : length;
-      record(step, t, length, taken, frame, drive);
+      record(step, t, length, taken, contact, frame, drive);
       if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
       y = first.mode >= 0 ? step.at(first.share) : step.to;
       t = first.mode < 0 && lands ? std::min(kink, end) : t + taken;
@@ -210,7 +211,7 @@ class Simulation {
     if (contact.only_turns(m, y, frame, drive)) {
       frame.mode[i] = -frame.mode[i];
     } else if (frame.mode[i] == 0.0) {
-      frame.mode[i] = contact.holding(y, frame, drive)[i] < 0 ? -1.0 : 1.0;
+      frame.mode[i] = plain(contact.holding(y, frame, drive)[i]) < 0 ? -1.0 : 1.0;
     } else {
       contact.rest(m, y, frame, drive);
       turning[i] = true;
@@ -264,9 +265,9 @@ class Simulation {
 
   const System& system;
   const Settings& settings;
+  Drive<T> drive;
   Contact<System, T> contact;
   Frame<System, T> frame;
-  Drive<T> drive;
   double t, end, h, kink = 0;
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?

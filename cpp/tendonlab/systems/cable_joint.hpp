@@ -7,8 +7,9 @@ namespace tendonlab::systems {
 ///   J_m omega'' = k i - friction - N (F_act_1 - F_act_2),   u' = N omega                                    (S2 eq. 1)
 ///   F_i = max(0, T + K x_i + c x_i'),  x_1 = u - r sin(theta) + x_0 = -x_2                             (S2 eqs 2, 3)
 /// Friction of the bushings acts between guide and nut: it shows in F_act_i = F_i + F_a_i and brakes the motor, not the
-/// joint. u counts from where the joint rests at theta = 0, which is x_0. A nut velocity that is prescribed takes the
-/// place of the motor, which then idles.
+/// joint, in the sense of the nuts, so that it never feeds their motion (S2 fig. 2). u counts from where the joint
+/// rests at theta = 0, which is x_0. A nut velocity that is prescribed takes the place of the motor, which then idles,
+/// and bushings follow the sense of the joint, as the paper's simulation has it.
 template <class T>
 struct CableJoint {
   static constexpr std::string_view name = "cable_joint",
@@ -16,7 +17,7 @@ struct CableJoint {
                                         "I(theta) theta'' = r cos(theta) (F_1 - F_2) + tau_g(theta) + 2 m_2 l_1 d_21 "
                                         "sin(theta) theta'^2; J_m omega' = k i - friction - N (F_act_1 - F_act_2); "
                                         "F_i = max(0, T + K x_i + c x_i'); F_act_i = F_i + F_a_i";
-  static constexpr int dof = 2, stated = 1, directions = 4, sides = 0;
+  static constexpr int dof = 2, stated = 1, directions = 4, sides = 0, driver = 1;
   static constexpr bool commanded = true, moving = true, plain_names = false;
   enum PortOf {
     joint,
@@ -32,16 +33,17 @@ struct CableJoint {
     num_ports
   };
   enum ModeOf { joint_sense, motor_sense, guide_sense, nut_sense };
-  static constexpr std::array<Port, num_ports> ports{{{"joint", joint_sense},
-                                                      {"motor", motor_sense},
-                                                      {"winding"},
-                                                      {"gear"},
-                                                      {"cable", -1, -1, Axis::linear, false, "cable_1"},
-                                                      {"cable", -1, -1, Axis::linear, false, "cable_2"},
-                                                      {"bushing_1", guide_sense, -1, Axis::linear, true},
-                                                      {"bushing_2", guide_sense, -1, Axis::linear, true},
-                                                      {"stiction", nut_sense, -1, Axis::linear, true, "stiction_1"},
-                                                      {"stiction", nut_sense, -1, Axis::linear, true, "stiction_2"}}};
+  static constexpr std::array<Port, num_ports> ports{
+      {{"joint", joint_sense},
+       {"motor", motor_sense},
+       {"winding"},
+       {"gear"},
+       {"cable", -1, -1, Axis::linear, false, "cable_1"},
+       {"cable", -1, -1, Axis::linear, false, "cable_2"},
+       {"bushing_1", motor_sense, -1, Axis::linear, false, {}, guide_sense},
+       {"bushing_2", motor_sense, -1, Axis::linear, false, {}, guide_sense},
+       {"stiction", motor_sense, -1, Axis::linear, false, "stiction_1", nut_sense},
+       {"stiction", motor_sense, -1, Axis::linear, false, "stiction_2", nut_sense}}};
   static constexpr bool joined[num_ports][2] = {{true, false}, {false, true}, {false, true}, {false, true},
                                                 {true, true},  {true, true},  {false, true}, {false, true},
                                                 {false, true}, {false, true}};
@@ -65,7 +67,7 @@ struct CableJoint {
 
   using Bushing =
       Slot<T, typename Joined<friction::Bushing, Laws<friction::Coulomb, friction::Viscous, friction::Stribeck>>::type>;
-  using Cable = Slot<T, Laws<transmission::TautCompliance>>;
+  using Cable = Slot<T, Laws<transmission::TautCompliance, transmission::ToeRegion>>;
   using Stiction = Slot<T, Laws<transmission::Hold>>;
   std::tuple<Slot<T, friction::All>, Slot<T, friction::All>, Slot<T, actuation::Motor>,
              Slot<T, Laws<friction::Arctan, transmission::Ripple>>, Cable, Cable, Bushing, Bushing, Stiction, Stiction>
@@ -126,7 +128,7 @@ struct CableJoint {
       at.position[1] = at.position[1] - (nut.position - goal) / nut.velocity;
       nut = carried(at.position[1], T(1.0));
     }
-    const bool idles = in.template given<1>();
+    const bool idles = in.template given<driver>();
     at.velocity[1] = idles ? T(0.0) : anchor_distance * cos(theta) * at.velocity[0] / nut.velocity;
   }
   /// Not inlined: ten ports in every stage of every scalar would compile for minutes and gain nothing.
@@ -135,7 +137,7 @@ struct CableJoint {
                                                            const Inputs& in) const {
     MovingCoupling<S, num_ports, 2> c;
     const S theta = at.position[0], omega = at.velocity[1], cosine = cos(theta), arm = anchor_distance * cosine;
-    const bool idles = in.template given<1>();
+    const bool idles = in.template given<driver>();
     const S turned = at.position[1] + in.template integral<1>(at.time) / travel;
     const S turning = omega + in.template input<1>(at.time) / travel;
     const Nut<S> nut = carried(turned, constant<S>(1.0));  // velocity: travel per motor angle
@@ -198,23 +200,22 @@ struct CableJoint {
   S tension(const MovingCoupling<S, num_ports, 2>& c) const {
     return std::get<i>(slot).respond(c.port[i], S{}).force;
   }
-  /// What the guides see, forwards as each cable runs, and what they would do in the sense in which the nuts last
-  /// moved.
+  /// What the guides see, forwards as each cable runs, and what they would do in the sense in which nuts that are
+  /// prescribed (`idles`: so the motor does) last moved.
   template <class S, class Modes>
   void pass_bushings(MovingCoupling<S, num_ports, 2>& c, const S& theta, const S& guided, const S& nut_velocity,
-                     const Modes& mode, bool rests) const {
+                     const Modes& mode, bool idles) const {
     const T& preload = std::get<transmission::TautCompliance<T>>(std::get<cable_1>(slot).laws).pretension;
     for (int i : {0, 1}) {
       const double forwards = i == 0 ? 1.0 : -1.0;
       auto& guide = c.port[static_cast<std::size_t>(bushing_1 + i)];
       auto& still = c.port[static_cast<std::size_t>(stiction_1 + i)];
-      set(guide, S(forwards * guided), S(forwards * anchor_distance * sin(theta)), lift<S>(preload),
-          forwards * mode[guide_sense]);
+      set(guide, S(forwards * (idles ? guided : nut_velocity)), S(forwards * anchor_distance * sin(theta)),
+          lift<S>(preload), forwards * mode[idles ? guide_sense : motor_sense]);
       guide.wrap = theta;
-      set(still, S(forwards * nut_velocity), guide.position, S{}, forwards * mode[nut_sense]);
+      set(still, S(forwards * nut_velocity), guide.position, S{}, forwards * mode[idles ? nut_sense : motor_sense]);
     }
-    // A motor comes to rest by its own friction; only nuts that are prescribed rest while the joint still moves.
-    if (std::get<stiction_1>(slot).active == 0 || !rests) return;
+    if (std::get<stiction_1>(slot).active == 0 || !idles) return;
     held<bushing_1, stiction_1>(c);
     held<bushing_2, stiction_2>(c);
   }
@@ -244,11 +245,23 @@ struct CableJoint {
     const T near = link_1_mass * link_1_center + link_2_mass * link_1_length, far = 2.0 * link_2_mass * link_2_center;
     return -(gravity * (near * first + far * second));
   }
-  /// Elongation of cable 1 that holds the joint at rest with both cables taut.
+  /// Elongation of cable 1 that holds the joint at rest, by Newton: with both cables taut and linear in one step.
   T holding_stretch(const T& theta) const {
-    const T& stiffness = std::get<transmission::TautCompliance<T>>(std::get<cable_1>(slot).laws).stiffness;
+    using D = Dual<T, 1>;
+    const auto& cable = std::get<cable_1>(slot);
+    const T& stiffness = std::get<transmission::TautCompliance<T>>(cable.laws).stiffness;
     if (plain(stiffness) <= 0) return T(0.0);
-    return -(weight(theta) / (2.0 * stiffness * anchor_distance * cos(theta)));
+    const T wanted = -(weight(theta) / (anchor_distance * cos(theta)));
+    T stretch = wanted / (2.0 * stiffness);
+    for (int i = 0; i < 20; ++i) {
+      Sliding<D> pulled, released;
+      pulled.position = variable<D>(stretch, 0);
+      released.position = -pulled.position;
+      const D pull = cable.respond(pulled, D{}).force - cable.respond(released, D{}).force;
+      if (plain(pull.d[0]) <= 0) break;  // both cables are slack
+      stretch = stretch + (wanted - pull.value) / pull.d[0];
+    }
+    return stretch;
   }
 };
 }  // namespace tendonlab::systems

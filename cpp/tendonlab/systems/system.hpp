@@ -33,13 +33,15 @@ enum class Axis { of_system, rotary, linear };
 /// Where a slot sits: its element, whether its force depends on the direction of its sliding (and which mode that is),
 /// whether it has a gap (and which mode is its side); a mode -1 is none. `axis`: what it slides along. `driven`: its
 /// velocity is prescribed by inputs, so it never sticks: its direction is that of the last motion. Ports of one element
-/// carry the same laws with the same parameters; each then has a `name` of its own.
+/// carry the same laws with the same parameters; each then has a `name` of its own. `while_driven`: where it is driven
+/// only in experiments that give the system's input `driver`, the mode of its direction in these.
 struct Port {
   std::string_view element;
   int direction = -1, side = -1;
   Axis axis = Axis::of_system;
   bool driven = false;
   std::string_view name = {};
+  int while_driven = -1;
 };
 /// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated.
 enum class Between { hold, linear, smooth };
@@ -112,8 +114,20 @@ inline constexpr int gradient_words = GradientWordsOf<System>::value;
 template <class System>
 constexpr bool drives_a_port() {
   for (const auto& port : System::ports)
-    if (port.driven) return true;
+    if (port.driven || port.while_driven >= 0) return true;
   return false;
+}
+template <class System, class = void>
+struct DriverOf : std::integral_constant<int, -1> {};
+template <class System>
+struct DriverOf<System, std::enable_if_t<(System::driver >= 0)>> : std::integral_constant<int, System::driver> {};
+/// Is the input given that drives ports which without it move freely?
+template <class System, class Inputs>
+bool is_driven(const Inputs& in) {
+  if constexpr (DriverOf<System>::value >= 0)
+    return in.template given<DriverOf<System>::value>();
+  else
+    return static_cast<void>(in), false;
 }
 /// An output; `axis` is the degree of freedom whose angle it is, -1 for anything else.
 struct Output {

@@ -13,7 +13,7 @@ from tendonlab.catalog import system_info
 from tendonlab.data import Dataset, load
 from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.reference import Reference, reference
-from tendonlab.papers.s2.twin import measured, simulate
+from tendonlab.papers.s2.twin import Sense, measured, simulate
 from tendonlab.system import System
 
 AROUND_JUMPS = 0.1  # s
@@ -29,6 +29,7 @@ RUNS: Mapping[str, tuple[tuple[float, ...], float, str]] = {  # set points, rad;
     "mixed": ((0.0, -0.35, 0.4), 0.05, "test"),
     "long": ((0.0, 0.55, -0.1), 0.06, "test"),
 }
+AGAIN = {"up": RUNS["up"], "up again": RUNS["up"]}
 
 
 def parameters(of: Constants) -> dict[str, float]:
@@ -62,14 +63,24 @@ def nut_input(of: Constants, of_reference: Reference, *, every: int = 1) -> pd.D
 
 
 def log_of_twin(
-    of: Constants, of_reference: Reference, *, ripple: float = 0.0, hold: bool = False, seed: int = 0
+    of: Constants,
+    of_reference: Reference,
+    *,
+    ripple: float = 0.0,
+    hold: bool = False,
+    toe_tension: float = 0.0,
+    seed: int = 0,
 ) -> pd.DataFrame:
     """One record of the twin at 50 Hz: `actuator_velocity` by the drive, and what the sensors read.
 
     Forces are left out (NaN) within 0.1 s of the start and end of every move: a jump that falls between two samples
     says nothing of its size (S2 sec. IV-B.3 leaves out 1 s)."""
-    run = simulate(of, of_reference, ripple=ripple, sense="hold" if hold else "instantaneous")
-    log = nut_input(of, of_reference, every=EVERY).join(measured(run.iloc[::EVERY], seed=seed))
+    sense: Sense = "hold" if hold else "instantaneous"
+    run = simulate(of, of_reference, ripple=ripple, sense=sense, toe_tension=toe_tension)
+    # The twin holds a velocity from sample to sample, which is what a drive would log half a step later.
+    asked = nut_input(of, of_reference)
+    done = 0.5 * (asked + asked.shift(1, fill_value=0.0))
+    log = done.iloc[::EVERY].join(measured(run.iloc[::EVERY], seed=seed))
     for instant in np.ravel(of_reference.moves):
         near = np.abs(log.index.to_numpy() - instant) < AROUND_JUMPS
         log.loc[near, ["cable_force_1", "cable_force_2"]] = np.nan
@@ -77,10 +88,18 @@ def log_of_twin(
 
 
 def write_dataset(
-    folder: str | Path, of: Constants, *, ripple: float = 0.0, hold: bool = False, seed: int = 0
+    folder: str | Path,
+    of: Constants,
+    *,
+    ripple: float = 0.0,
+    hold: bool = False,
+    toe_tension: float = 0.0,
+    repeated: bool = False,
+    seed: int = 0,
 ) -> Dataset:
-    """Write logs of a twin with the withheld effects `ripple` and `hold` into `folder` as a dataset whose simulator has
-    neither, and load it."""
+    """Write logs of a twin with the withheld effects `ripple`, `hold` and `toe_tension`, N, into `folder` as a dataset
+    whose simulator has none of them, and load it. `repeated`: one run is made twice, which tells noise from what the
+    simulator lacks."""
     into = Path(folder)
     into.mkdir(parents=True, exist_ok=True)
     lines = ['format = "tendonlab-dataset/1"', 'name = "s2-twin"']
@@ -91,10 +110,14 @@ def write_dataset(
     lines += ["[signals.actuator_velocity]", 'column = "actuator_velocity"', 'unit = "m/s"', "hold = false"]
     for name, unit in UNITS.items():
         lines += [f"[signals.{name}]", f'column = "{name}"', f'unit = "{unit}"', f"noise_sd = {NOISE_SD[name]!r}"]
-    for k, (name, (points, speed, part)) in enumerate(RUNS.items()):
-        record = log_of_twin(of, reference(points, speed=speed), ripple=ripple, hold=hold, seed=1000 * seed + k)
+    runs = {**RUNS, **(AGAIN if repeated else {})}
+    for k, (name, (points, speed, part)) in enumerate(runs.items()):
+        record = log_of_twin(
+            of, reference(points, speed=speed), ripple=ripple, hold=hold, toe_tension=toe_tension, seed=1000 * seed + k
+        )
         record.to_csv(into / f"{name}.csv")
         lines += ["[[experiments]]", f'name = "{name}"', f'file = "{name}.csv"', f'split = "{part}"']
         lines += ["initial = { joint_velocity = 0.0 }"]
+        lines += ['repeat = "up"'] if repeated and name in AGAIN else []
     (into / "dataset.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
     return load(into)

@@ -1,7 +1,8 @@
 """The twin of S2: cables and joint behind nuts whose motion is prescribed, by a linearly implicit step.
 
 It shares no law and no stepper with the library. The gaps that the paper names are switches: velocity ripple of the
-gear, and stiction that holds the sense of bushing friction at rest.
+gear, stiction that holds the sense of bushing friction at rest, a path that changes with the angle, a softer cable
+at low tension.
 """
 
 from __future__ import annotations
@@ -15,13 +16,16 @@ import pandas as pd
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2 import equations
+from tendonlab.papers.s2.cable import Spring
 from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.reference import Reference
+from tendonlab.procedures.check import within
 
 Sense = Literal["instantaneous", "hold", "reference", "smooth"]
 SENSES: tuple[Sense, ...] = ("instantaneous", "hold", "reference", "smooth")
 SMOOTH_SPEED = 1e-4  # m/s, over which "smooth" friction turns
+RESTING = 1e-12  # m/s, up to which a velocity of the joint is rounding
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +47,7 @@ def simulate(
     ripple: float = 0.0,
     sense: Sense = "instantaneous",
     path_error: float = 0.0,
+    toe_tension: float = 0.0,
 ) -> pd.DataFrame:
     """Simulate the joint behind nuts that follow `reference`; a frame by time "t", s, SI.
 
@@ -50,22 +55,27 @@ def simulate(
     `ripple`: u' -> u' (1 + ripple sin(2 pi u / p)) of the nuts. `sense`: what friction of the bushings follows, the
     joint's velocity ("instantaneous"), the nuts' and at rest their last ("hold"), the reference's, held likewise
     ("reference"), or the joint's over 1e-4 m/s ("smooth"). `path_error`: elastic path, m, that grows as 1 - cos(theta)
-    in both cables. Columns: theta, theta_rate, nut_rate, elongation, F_r_1, F_r_2, F_act_1, F_act_2. S2 eqs. 2 to 11.
-    Raises ParameterError for an unknown `sense`."""
+    in both cables. `toe_tension`: N, below which the cables are softer (`Spring`). Columns: theta, theta_rate,
+    nut_rate, elongation, F_r_1, F_r_2, F_act_1, F_act_2. S2 eqs. 2 to 11.
+    Raises ParameterError for an unknown `sense`, and for a `toe_tension` that is no number or negative."""
     if sense not in SENSES:
         raise ParameterError(f"sense = {sense!r}: expected one of {', '.join(SENSES)}")
-    motion = pd.DataFrame(_steps(of, reference, controller, ripple), index=pd.Index(reference.time, name="t"))
-    return motion.join(_forces(of, motion, reference, sense, path_error))
+    spring = Spring(of, within("toe_tension", toe_tension, 0.0, np.inf, "N"))
+    motion = pd.DataFrame(_steps(of, reference, controller, ripple, spring), index=pd.Index(reference.time, name="t"))
+    return motion.join(_forces(of, motion, reference, sense, path_error, spring))
 
 
-def _steps(of: Constants, reference: Reference, controller: PID | None, ripple: float) -> dict[str, Array]:
+def _steps(
+    of: Constants, reference: Reference, controller: PID | None, ripple: float, spring: Spring
+) -> dict[str, Array]:
     """Theta, its rate, common elongation e of cable 1 (that of cable 2 is -e), and its rate at every step."""
     h = reference.step
     fixed = float(equations.inertia(of, np.pi / 2.0))
     swinging = float(equations.inertia(of, 0.0)) - fixed
     wanted = (of.r * np.cos(reference.angle) * reference.velocity).tolist()
     aims, aim_rates = reference.angle.tolist(), reference.velocity.tolist()
-    theta, rate, e = aims[0], 0.0, -float(equations.gravity_torque(of, aims[0])) / (2.0 * of.K * of.r * cos(aims[0]))
+    theta, rate = aims[0], 0.0
+    e = spring.holding(float(equations.holding_difference(of, theta)))
     u = integral = stretch = 0.0
     rows = []
     for nut, aim, aim_rate in zip(wanted, aims, aim_rates, strict=True):
@@ -79,26 +89,34 @@ def _steps(of: Constants, reference: Reference, controller: PID | None, ripple: 
         rows.append((theta, rate, nut, e, stretch))
         arm = of.r * cos(theta)
         inertia = fixed + swinging * cos(theta)
-        one, two = cos(theta + of.phi), cos(2.0 * theta + of.phi)
-        gravity = -of.g * (of.m_1 * of.d_11 * one + of.m_2 * (of.l_1 * one + 2.0 * of.d_21 * two))
-        pull = 2.0 * arm * (of.K * (e + h * nut) + of.c * nut)
+        near, far = cos(theta + of.phi), cos(2.0 * theta + of.phi)
+        gravity = -of.g * (of.m_1 * of.d_11 * near + of.m_2 * (of.l_1 * near + 2.0 * of.d_21 * far))
+        (one, stiff_1), (two, stiff_2) = spring.pull(e), spring.pull(-e)
+        stiffness = stiff_1 + stiff_2
+        pull = arm * (one - two + (h * stiffness + 2.0 * of.c) * nut)
         whirl = 2.0 * of.m_2 * of.l_1 * of.d_21 * sin(theta) * rate * rate
-        rate = (inertia * rate + h * (pull + gravity + whirl)) / (inertia + 2.0 * h * arm * arm * (h * of.K + of.c))
+        rate = (inertia * rate + h * (pull + gravity + whirl)) / (
+            inertia + h * arm * arm * (h * stiffness + 2.0 * of.c)
+        )
         stretch = nut - arm * rate
         e, theta, u = e + h * stretch, theta + h * rate, u + h * nut
     names = ("theta", "theta_rate", "nut_rate", "elongation", "elongation_rate")
     return dict(zip(names, np.array(rows).T, strict=True))
 
 
-def _forces(of: Constants, motion: pd.DataFrame, reference: Reference, sense: Sense, path_error: float) -> pd.DataFrame:
+def _forces(
+    of: Constants, motion: pd.DataFrame, reference: Reference, sense: Sense, path_error: float, spring: Spring
+) -> pd.DataFrame:
     theta = motion["theta"].to_numpy()
     e, rate = motion["elongation"].to_numpy(), motion["elongation_rate"].to_numpy()
     path = path_error * (1.0 - np.cos(theta))
     velocity = of.r * np.cos(theta) * motion["theta_rate"].to_numpy()
+    velocity[np.abs(velocity) <= RESTING] = 0.0
     followed = {"hold": motion["nut_rate"].to_numpy(), "reference": reference.velocity}.get(sense, velocity)
     found: dict[str, Array] = {}
     for i, sign in enumerate((1.0, -1.0)):
-        carried = equations.cable_force(of, sign * e + path, sign * rate)
+        tension = np.array([spring.pull(x)[0] for x in (sign * e + path).tolist()])
+        carried = np.maximum(0.0, tension + sign * of.c * rate)
         if sense == "smooth":
             forward, backward = (equations.bushing_force(of.bushings[i], theta, s, of.T) for s in (1.0, -1.0))
             share = np.tanh(velocity / SMOOTH_SPEED)
@@ -118,14 +136,16 @@ def last_sense(velocity: Array) -> Array:
 
 def measured(run: pd.DataFrame, *, seed: int | np.random.Generator = 0, quantize: float | None = None) -> pd.DataFrame:
     """What the rig would log of a run: joint_angle (18 bit), joint_velocity, cable_force_1, cable_force_2 and the
-    drive's actuator_velocity is left to the caller. Noise sd: 2 mrad/s, 1.5 N; `quantize`: resolution of the forces, N
-    (5 on the rig). Reconstructed: the paper prints resolutions only (S2 sec. IV-A)."""
+    drive's actuator_velocity is left to the caller. Noise sd: 12 urad, without which repeats would repeat to the last
+    bit, 2 mrad/s, 1.5 N; `quantize`: resolution of the forces, N (5 on the rig). Reconstructed: the paper prints
+    resolutions only (S2 sec. IV-A)."""
     random = np.random.default_rng(seed)
     bit = 2.0 * np.pi / 2**18
     log = pd.DataFrame(index=run.index)
-    log["joint_angle"] = bit * np.round(run["theta"] / bit)
+    log["joint_angle"] = run["theta"]
     log["joint_velocity"] = run["theta_rate"] + 2e-3 * random.normal(size=len(run))
     for i in (1, 2):
         force = run[f"F_act_{i}"] + 1.5 * random.normal(size=len(run))
         log[f"cable_force_{i}"] = force if quantize is None else quantize * np.round(force / quantize)
+    log["joint_angle"] = bit * np.round(run["theta"] / bit + 0.5 * random.normal(size=len(run)))
     return log
