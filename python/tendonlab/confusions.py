@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from tendonlab.catalog import SystemInfo
@@ -35,8 +36,9 @@ CONFUSIONS = (
         "the joint's power, and a wrong load does not turn its sign with the motion",
     ),
     Confusion(
-        ("stiction:hold", "joint:coulomb"),
-        "a slow push on the resting joint: friction of the joint resists it, stiction of the guides does not",
+        ("stiction:hold", "joint:coulomb", "joint:viscous"),
+        "pushes on the resting joint at several speeds, with their torque: dry friction of the joint resists up to a "
+        "level, viscous friction by the speed, stiction of the guides not at all",
     ),
     Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
@@ -64,3 +66,9 @@ def confusions(info: SystemInfo, effect: str) -> list[Confusion]:
         if effect in confusion.effects and others:
             found.append(Confusion(others, confusion.separates))
     return found
+
+
+def among(effects: Collection[str]) -> list[Confusion]:
+    """The confusions that two or more of `effects` share, each with those of its own that are among them."""
+    shared = [(tuple(name for name in c.effects if name in effects), c.separates) for c in CONFUSIONS]
+    return [Confusion(names, separates) for names, separates in shared if len(names) > 1]

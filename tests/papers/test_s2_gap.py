@@ -76,3 +76,18 @@ def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path
     assert len(found.selected) == 1
     assert any("stiction:hold" in group and len(holds & set(group)) > 1 for group in found.indistinguishable)
     assert found.shrinkage["from_refitted"]["value"] > 0.8
+    (proposal,) = found.next_experiments
+    assert {"stiction:hold", "joint:coulomb"} <= set(proposal["separates"])
+    assert "pushes on the resting joint" in proposal["description"]
+
+
+def test_cables_that_are_softer_at_low_tension_are_told_from_everything(tmp_path: Path) -> None:
+    """G4: the joint hangs, preloaded to half of where the toe ends; Table II knows the cables above it only. That one
+    run is made twice tells the noise from an error of 0.1 mrad."""
+    rig = s2.write_dataset(tmp_path, RIG.with_(phi=-np.pi / 2.0, T=100.0), toe_tension=200.0, repeated=True)
+    found = tl.diagnose(rig, progress=False)
+    assert found.verdict == "effect"
+    assert list(found.selected) == ["cable:toe_region"]
+    assert not found.indistinguishable
+    assert found.effects[0].parameters["toe_tension"]["value"] == pytest.approx(200.0, rel=0.02)
+    assert found.shrinkage["from_refitted"]["value"] > 0.8

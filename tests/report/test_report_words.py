@@ -82,7 +82,8 @@ def test_units() -> None:
 def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
     expected = {
         "effect": "An unmodelled effect explains the gap: Stribeck friction at the joint (probability 0.93, not yet "
-        "calibrated); adding it shrinks the held-out gap by 91 % (88–94 %).",
+        "calibrated), which these data cannot tell from presliding friction at the joint; adding it shrinks the "
+        "held-out gap by 91 % (88–94 %).",
         "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor "
         "(probability 0.97).",
         "parameters_only": "Only parameter values were off, and no effect is missing (probability 0.90, not yet "

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from tendonlab import confusions
 from tendonlab.diagnose import heldout, notes, where
 from tendonlab.diagnose.advise import advise
 from tendonlab.diagnose.case import Case
@@ -57,7 +58,7 @@ def compose(fitter: Fitter, nominal: Fitted, found: Search, *, seed: int, second
             "from_nominal": heldout.shrinkage(case, stages["nominal"], stages["with_effect"], floor, judged, rng),
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
-        next_experiments=tuple(_next(case, floor, found)),
+        next_experiments=tuple(_next(case, floor, found) + _measurements(verdict.indistinguishable)),
         warnings=tuple(notes.warnings(case, floor, found)),
         units=notes.units(case),
         overlay=_overlay(case, stages, floor, judged),
@@ -113,6 +114,15 @@ def _next(case: Case, floor: Floor, found: Search) -> list[dict[str, Any]]:
         return []
     trials = found.rounds[0].trials
     return advise(case, floor, trials[0].fitted, trials[1].fitted if len(trials) > 1 else found.null)
+
+
+def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
+    """What is known to separate tied causes, whether or not the simulator can make it."""
+    return [
+        {"description": known.separates, "separates": list(known.effects), "expected_gain": None}
+        for group in ties
+        for known in confusions.among(group)
+    ]
 
 
 def _overlay(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> Overlay:

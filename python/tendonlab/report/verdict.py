@@ -71,7 +71,15 @@ def _effect(diagnosis: Diagnosis) -> str:
     several = f"{_COUNTS.get(len(names), len(names))} unmodelled effects explain"
     opening = "An unmodelled effect explains" if one else several
     tail = _shrinks(diagnosis, "from_refitted", f"adding {'it' if one else 'them'} shrinks")
-    return f"{opening} the gap: {listing(map(phrase, names))} {_aside(diagnosis)}{tail}."
+    tied = f"{_aside(diagnosis)}{_ties(diagnosis) if one else ''}"
+    return f"{opening} the gap: {listing(map(phrase, names))} {tied}{tail}."
+
+
+def _ties(diagnosis: Diagnosis) -> str:
+    """What the data cannot tell from the one effect that was selected."""
+    (chosen,) = diagnosis.selected
+    others = [name for group in diagnosis.indistinguishable if chosen in group for name in group if name != chosen]
+    return f", which these data cannot tell from {listing(map(phrase, others), last='or')}" if others else ""
 
 
 def _unknown(diagnosis: Diagnosis) -> str:

@@ -29,6 +29,8 @@ EFFECTS = {
     "pretension_loss": "loss of pretension",
     "offset": "constant offset",
     "unbalance": "unbalance",
+    "hold": "hold by stiction",
+    "toe_region": "toe region",
     "ripple": "torque ripple",
     "gain_error": "gain error",
     "saturation": "saturation",
@@ -46,6 +48,7 @@ PLACES = {
     "contact": "at the pulley contact",
     "joint": "at the joint",
     "load": "on the load",
+    "stiction": "in the guides",
 }
 VERDICTS = {
     "no_gap": "No gap",
