@@ -9,7 +9,7 @@ namespace tendonlab::systems {
 /// Friction of the bushings acts between guide and nut: it shows in F_act_i = F_i + F_a_i and brakes the motor, not the
 /// joint, in the sense of the nuts, so that it never feeds their motion (S2 fig. 2). u counts from where the joint
 /// rests at theta = 0, which is x_0. A nut velocity that is prescribed takes the place of the motor, which then idles,
-/// and bushings follow the sense of the joint, as the paper's simulation has it.
+/// and bushings follow the sense of the joint, as the paper's simulation has it, or hold by stiction.
 template <class T>
 struct CableJoint {
   static constexpr std::string_view name = "cable_joint",
