@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tendonlab import _core
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 ROUNDING = 1e-9  # of its range: a signal with less noise was computed, not measured
 
@@ -32,12 +35,21 @@ def smooth(time: np.ndarray, values: np.ndarray) -> _core.Signal:
 def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation; through them where they
     carry no noise, which leaves nothing to choose by."""
-    from scipy.interpolate import PPoly, make_smoothing_spline
-
     kept = np.isfinite(values)
     if white_noise_sd(values) <= ROUNDING * float(np.ptp(values[kept])):
         return smooth(time[kept], values[kept])
-    return _from_pieces(PPoly.from_spline(make_smoothing_spline(time[kept], values[kept])))
+    return _from_pieces(spline_near(time[kept], values[kept]))
+
+
+def spline_near(time: np.ndarray, values: np.ndarray) -> PPoly:
+    """The cubic spline that cross-validation chooses. It searches in absolute numbers, so time goes in sampling
+    intervals: in seconds it would stop far too smooth."""
+    from scipy.interpolate import PPoly, make_smoothing_spline
+
+    interval = float(np.median(np.diff(time)))
+    found = PPoly.from_spline(make_smoothing_spline(time / interval, values))
+    powers = np.arange(len(found.c) - 1, -1, -1)[:, None]
+    return PPoly(found.c / interval**powers, interval * found.x)
 
 
 def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
