@@ -34,10 +34,12 @@ def fit_tensions(
     """Fit the parameters `free` of `start` (`tension_simulator`) to measured `tensions` by least squares, from its
     values and without priors; everything else is held.
 
-    `read`: as `measured` gives it, by time, s; `noise`: sd of a tension, N. `smooth`: splines near the samples of both
-    angles, whose rates the contacts need; False: every sample as it was read, without a rate, which is all that the
-    middle tensions T12 and T22 need. So with T22 alone, k and T_p are those of `identify_stiffness` (S4 eq. 37).
-    Raises ParameterError for an unknown parameter, tension or column."""
+    `read`: as `measured` gives it, by time, s; bristles begin relaxed, and where a tension is NaN nothing is compared,
+    as while they run in. `noise`: sd of a tension, N. `smooth`: splines near the samples of both angles, whose rates
+    the contacts need; False: every sample as it was read, without a rate, which is all that the middle tensions T12 and
+    T22 need. So with T22 alone, k and T_p are those of `identify_stiffness` (S4 eq. 37). Angles count as exact, in the
+    intervals too: what 17-bit encoders round moves sigma_2 by 6 %, the asymmetry by 2 %. Raises ParameterError for an
+    unknown parameter, tension or column."""
     if start.kind != "ccsrm_tensions":
         raise ParameterError(f"start.kind = {start.kind!r}: expected 'ccsrm_tensions', see tension_simulator")
     for of, names, known in (
