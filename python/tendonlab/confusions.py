@@ -56,8 +56,8 @@ CONFUSIONS = (
     ),
     Confusion(
         ("sheath:viscous", "sensor.output_torque:delay"),
-        "an output that is held or a load that is no spring: before a spring the torque rises with the velocity, and "
-        "less of it looks like later",
+        "a load that is no spring: before a spring the torque rises with velocity, and what viscous friction takes "
+        "from it looks like a torque that comes later",
     ),
 )
 

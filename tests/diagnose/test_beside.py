@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tendonlab.diagnose.beside import Seat
-from tendonlab.diagnose.rounds import Round, Trial
+from tendonlab.diagnose.rounds import DETECT, Round, Trial
 from tendonlab.diagnose.verdict import _marginals
 
 STRIBECK, ASYMMETRY, DELAY = "joint:stribeck", "joint:asymmetry", "actuation:delay"
@@ -22,7 +22,7 @@ def seat(effect: str, *others: str, **probability: float) -> Round:
     names = {"stribeck": STRIBECK, "asymmetry": ASYMMETRY, "delay": DELAY, "none": None}
     shares = {names[key]: p for key, p in probability.items()}
     own = trial(effect, 100.0) if effect else None
-    return Round(others, (), (own,) if own else (), shares, own)
+    return Round(others, (), (own,) if own else (), shares, own, set())
 
 
 def test_an_effect_is_as_probable_as_beside_the_others() -> None:
@@ -58,7 +58,11 @@ def test_as_many_effects_as_are_allowed_are_one_set() -> None:
 def test_a_rival_is_the_best_other_claim_that_is_not_far_behind() -> None:
     def rival(*trials: Trial) -> Trial | None:
         others: Any = SimpleNamespace(added=(ASYMMETRY,))
-        return Seat(others, trials[0], Round((ASYMMETRY,), (), trials, {}, trials[0])).rival()
+        return Seat(
+            others,
+            trials[0],
+            Round((ASYMMETRY,), (), trials, {}, trials[0], {t.effect for t in trials if DETECT.passed(t)}),
+        ).rival()
 
     own, near, far = trial(STRIBECK, 100.0), trial(DELAY, 70.0), trial("motor:stribeck", 40.0)
     assert rival(own, far, near) is near

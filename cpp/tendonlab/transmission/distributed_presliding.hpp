@@ -29,8 +29,8 @@ struct DistributedPresliding {
     return std::tuple{
         parameter(&DistributedPresliding::turnover_rise, "turnover_rise", Dimension::effort, Purpose::shape, 0.01, 1e-9,
                   inf, "rise of the output within which all but 1/e of the last friction turns over"),
-        parameter(&DistributedPresliding::share, "distributed_share", Dimension::ratio, Purpose::amplitude, 1.0, 0.0,
-                  1.0, "share of the output that is held by torque")};
+        parameter(&DistributedPresliding::share, "distributed_share", Dimension::ratio, Purpose::share, 1.0, 0.0, 1.0,
+                  "share of the output that is held by torque")};
   }
   /// y after `before`, when the torque without dry friction of `level` went on from `from` to `to`.
   template <class S>

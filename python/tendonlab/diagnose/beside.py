@@ -31,7 +31,7 @@ class Seat:
 
     def rival(self) -> Trial | None:
         """The best other claim to it, unless that lies far behind."""
-        able = [t for t in self.round.trials if t.effect != self.own.effect and DETECT.passed(t)]
+        able = [t for t in self.round.trials if t.effect != self.own.effect and t.effect in self.round.established]
         best = max(able, key=lambda t: t.evidence_gain, default=None)
         return best if best and best.evidence_gain > CATCH_UP * self.own.evidence_gain else None
 
@@ -67,20 +67,21 @@ def _seat(fitter: Fitter, best: Fitted, effect: str, shop: Workshop) -> Seat:
     leads = shop.leads(fitter, others, label)
     rivals = [x for x in leads if x.effect != effect and x.gain > HOPEFUL * DETECT.evidence][:NUM_RIVALS]
     trials = shop.refit(fitter, others, rivals, label, known=own)
-    passed = {t.effect for t in trials if DETECT.passed(t)}
+    passed = {t.effect for t in trials if DETECT.passed(t) and not (_leads(t, own) and not _holds(fitter, best, t))}
     return Seat(others, own, conclude(others, leads, trials, passed=passed, bar=DETECT, accepted=own))
 
 
 def exchange(fitter: Fitter, best: Fitted, chosen: Sequence[Seat], known: Known, shop: Workshop) -> Fitted | None:
     """The model in which a seat is given to nothing, to what fills it clearly better, or to what does so together with
     one effect more; `known` then holds who took a seat. None where every effect is in its place."""
-    needless = [seat for seat in chosen if not DETECT.passed(seat.own)]
+    first = max(chosen, key=lambda seat: seat.own.evidence_gain)
+    bar = again(fitter, first.own.evidence_gain)
+    needless = [seat for seat in chosen if seat is not first and not bar.passed(seat.own)]
     if needless:
         return min(needless, key=lambda seat: seat.own.evidence_gain).others
     claims = [(seat, rival) for seat in chosen if (rival := seat.rival()) is not None]
     for seat, rival in sorted(claims, key=lambda claim: -claim[1].fitted.evidence):
-        clear = rival.evidence_gain - seat.own.evidence_gain > DETECT.evidence
-        if clear and _confirmed(fitter, best, rival.fitted):
+        if _leads(rival, seat.own):
             known[seat.key(rival)] = seat.given_to(rival)
             return rival.fitted
     for _, rival in claims if len(best.added) < MAX_EFFECTS else []:
@@ -88,7 +89,7 @@ def exchange(fitter: Fitter, best: Fitted, chosen: Sequence[Seat], known: Known,
         if together is None or (friend := together.accepted) is None:
             continue
         clear = friend.fitted.evidence - best.evidence > again(fitter, most(known)).evidence
-        if clear and _confirmed(fitter, best, friend.fitted):
+        if clear and _holds(fitter, best, friend):
             shared = Seat(rival.fitted, friend, together)
             known[shared.key(friend)] = shared
             return friend.fitted
@@ -100,9 +101,14 @@ def most(known: Known) -> float:
     return max((seat.own.evidence_gain for seat in known.values()), default=0.0)
 
 
-def _confirmed(fitter: Fitter, best: Fitted, instead: Fitted) -> bool:
+def _leads(rival: Trial, own: Trial) -> bool:
+    return rival.evidence_gain - own.evidence_gain > DETECT.evidence
+
+
+def _holds(fitter: Fitter, best: Fitted, instead: Trial) -> bool:
+    """Whether it predicts experiments that it was not fitted to better than `best`, whose place it would take."""
     try:
-        return confirmed(fitter, best, instead)
+        return confirmed(fitter, best, instead.fitted)
     except NumericalError:
         return False
 

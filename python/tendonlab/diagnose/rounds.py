@@ -62,14 +62,15 @@ DETECT = Bar(DETECT_EVIDENCE, DETECT_LEFT_OUT, 0.0)
 
 @dataclass(frozen=True)
 class Round:
-    """One more effect beside those of `base`: all leads, the trials best first, and the probability of each (key None:
-    no further effect)."""
+    """One more effect beside those of `base`: all leads, the trials best first, the probability of each (key None: no
+    further effect), the one that was added, and all that are `established`."""
 
     base: tuple[str, ...]
     leads: tuple[Lead, ...]
     trials: tuple[Trial, ...]
     probability: dict[str | None, float]
     accepted: Trial | None
+    established: Set[str]
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,9 @@ def conclude(
 ) -> Round:
     """The round of `trials`, best first, of which those in `passed` are established and one, or none, is added."""
     temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
-    return Round(base.added, tuple(leads), tuple(trials), _probabilities(trials, passed, bar, temperature), accepted)
+    return Round(
+        base.added, tuple(leads), tuple(trials), _probabilities(trials, passed, bar, temperature), accepted, passed
+    )
 
 
 def _holds(fitter: Fitter, best: Fitted, trial: Trial, *, further: bool) -> bool:
