@@ -49,3 +49,11 @@ def test_a_long_record_keeps_its_speed() -> None:
     time, values = record(step=1e-3, noise=1e-3, num=20_000)
     error = smoothing_spline(time, values)(time, 1) - 4.0 * np.cos(4.0 * time)
     assert np.sqrt(np.mean(error**2)) < 0.01
+
+
+@pytest.mark.parametrize("unit", [1e-3, 60.0])
+def test_the_unit_of_time_does_not_matter(unit: float) -> None:
+    time, values = record(step=0.01, noise=1e-4)
+    seconds, others = smoothing_spline(time, values), smoothing_spline(unit * time, values)
+    np.testing.assert_allclose(others(unit * time), seconds(time), atol=1e-9)
+    np.testing.assert_allclose(unit * others(unit * time, 1), seconds(time, 1), atol=1e-6)
