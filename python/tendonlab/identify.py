@@ -13,6 +13,7 @@ from tqdm import tqdm
 
 from tendonlab import _core, priors
 from tendonlab.catalog import unit
+from tendonlab.data.dataset import require_dataset
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.identification import Identification, Problem
 from tendonlab.replay import Prepared, choose, prepare
@@ -49,8 +50,12 @@ def identify(
     kept. `tolerance`: relative error of a step of the simulation. Ctrl-C keeps the best so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect,
     NumericalError if no start can be simulated. Source: S2 sec. 4."""
-    if num_starts < 1:
-        raise ParameterError(f"num_starts = {num_starts}: expected at least 1")
+    require_dataset(dataset)
+    if not isinstance(num_starts, int) or num_starts < 1:
+        raise ParameterError(f"num_starts = {num_starts!r}: expected at least 1")
+    for name, given in (("effects", effects), ("experiments", experiments)):
+        if isinstance(given, str):
+            raise ParameterError(f"{name} = {given!r}: expected a list such as [{given!r}]")
     chosen = dataset.train if experiments is None else tuple(dataset[name] for name in experiments)
     if not chosen:
         raise DatasetError(f"{dataset.name}: no training experiment; expected at least one with split = train")

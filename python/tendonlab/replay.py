@@ -78,13 +78,14 @@ def choose(dataset: Dataset, system: System) -> Replay:
 def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
     """The experiment for the core: its inputs, its loop and an initial state estimated from the first samples.
 
-    Raises DatasetError where a signal that the replay needs was not logged."""
+    Raises DatasetError where a signal that the replay needs was not logged, or is no row of numbers in time."""
+    _require_time(experiment)
     data, time = experiment.data, experiment.time
     outputs = system.info.outputs
     measured = np.full((len(outputs), len(time)), np.nan)
     for c, signal in enumerate(outputs):
         if signal.name in data.columns:
-            measured[c] = data[signal.name].to_numpy(dtype=float)
+            measured[c] = _samples(experiment, signal.name)
     position, velocity, free, sd = _initial_state(experiment, system, measured)
     core = _core.Experiment(
         kind=system.kind,
@@ -101,16 +102,25 @@ def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
     )  # fmt: skip
 
 
+def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
+    """The experiment, or one made of a frame. Raises ParameterError for anything else, such as a name."""
+    from tendonlab.data import Experiment
+
+    if isinstance(given, pd.DataFrame):
+        return Experiment(name="given", data=given)
+    if not isinstance(given, Experiment):
+        told = "expected an experiment of a dataset, such as dataset['run-1'], or a frame indexed by time"
+        raise ParameterError(f"experiment is of type {type(given).__name__}: {told}")
+    return given
+
+
 def simulate(
     system: System, experiment: Experiment | pd.DataFrame, *, tolerance: float, ports: bool, replay: str
 ) -> Trajectory:
     """Simulate one experiment; see System.simulate."""
-    from tendonlab.data import Experiment
-
     if replay not in KINDS:
         raise ParameterError(f"replay = {replay!r}: expected one of {', '.join(KINDS)}")
-    if isinstance(experiment, pd.DataFrame):
-        experiment = Experiment(name="given", data=experiment)
+    experiment = as_experiment(experiment)
     controller = system.controller
     known = controller is not None and controller.reference in experiment.data.columns
     if replay == "controller" and not known:
@@ -165,12 +175,30 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
     return signals
 
 
-def _finite(experiment: Experiment, name: str) -> np.ndarray:
-    """The samples of an input, all of them numbers, at instants that increase."""
-    values, time = experiment.data[name].to_numpy(dtype=float), experiment.time
-    if len(time) > 1 and not np.all(np.diff(time) > 0):
+def _require_time(experiment: Experiment) -> None:
+    """Raise DatasetError unless the frame is indexed by instants, s, that increase."""
+    index = experiment.data.index
+    if index.dtype.kind not in "iuf":
+        raise DatasetError(f"{experiment.name}: the index is of type {index.dtype}; expected time in s, as numbers")
+    time = experiment.time
+    if len(time) > 1 and not np.all(np.diff(time) > 0):  # NaN fails here too
         k = int(np.argmin(np.diff(time) > 0)) + 1
         raise DatasetError(f"{experiment.name}: time[{k}] = {time[k]} s after {time[k - 1]} s; expected it to increase")
+
+
+def _samples(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of a signal, NaN where it was not measured."""
+    column = experiment.data[name]
+    if column.ndim != 1:
+        raise DatasetError(f"{experiment.name}: {name} stands there {column.shape[1]} times; expected one column")
+    if column.dtype.kind not in "biuf":
+        raise DatasetError(f"{experiment.name}: {name} is of type {column.dtype}; expected real numbers")
+    return np.asarray(column.to_numpy(dtype=float, na_value=np.nan))
+
+
+def _finite(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of an input, all of them numbers."""
+    values, time = _samples(experiment, name), experiment.time
     broken = np.flatnonzero(~np.isfinite(values))
     if broken.size:
         k = int(broken[0])
@@ -203,16 +231,16 @@ def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.n
 
 
 def _controller_loop(experiment: Experiment, system: System, controller: Controller) -> _core.Loop:
-    data, time, held = experiment.data, experiment.time, experiment.holds
+    time, held = experiment.time, experiment.holds
     c = [s.name for s in system.info.outputs].index(controller.measured)
     cascade = controller.kind == "cascade"
-    reference = data[controller.reference].to_numpy(dtype=float)
+    reference = _finite(experiment, controller.reference)
     differentiated = not cascade and controller.derivative_on == "error" and controller.sample_time == 0.0
     # A reference that is differentiated needs a slope without jumps; else it goes between samples as the contract says.
     make = hold if held.get(controller.reference, False) else smooth if differentiated else linear
     disturbance = _core.Signal()
     if controller.disturbance is not None:
-        values = data[controller.disturbance].to_numpy(dtype=float)
+        values = _finite(experiment, controller.disturbance)
         disturbance = hold(time, values) if held.get(controller.disturbance, True) else linear(time, values)
     return _core.Loop(
         kind="controller",

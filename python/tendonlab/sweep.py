@@ -15,6 +15,7 @@ from tqdm import tqdm
 from tendonlab.catalog import unit
 from tendonlab.data import Experiment
 from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.replay import as_experiment
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -49,7 +50,7 @@ def sweep(
     ]
     refuse_conditions(experiment, axes)
     systems = [system.with_parameters(point) for point in points]
-    time = (experiment.data if isinstance(experiment, Experiment) else experiment).index.to_numpy(dtype=float)
+    time = as_experiment(experiment).time
     outputs = np.full((len(points), len(system.info.outputs), len(time)), np.nan)
     messages = ["interrupted"] * len(points)
     with _threads() if executor is None else _borrowed(executor) as pool:
@@ -77,7 +78,10 @@ def refuse_conditions(experiment: Experiment | pd.DataFrame, names: Iterable[str
 
 
 def _axis(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
-    axis = np.asarray(values, dtype=float)
+    try:
+        axis = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{name} = {values!r}: expected a list of numbers") from error
     if axis.ndim != 1 or axis.size == 0:
         raise ParameterError(f"{name} has shape {axis.shape}: expected a list of values, shape (n,), n > 0")
     return axis

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.data.names import expected_one_of
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, ParameterError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -203,3 +203,9 @@ class Dataset:
 
     def _with_role(self, role: str) -> tuple[str, ...]:
         return tuple(name for name, spec in self.signals.items() if spec.role == role)
+
+
+def require_dataset(given: object) -> None:
+    """Raise ParameterError for anything but a dataset, such as the folder of one."""
+    if not isinstance(given, Dataset):
+        raise ParameterError(f"dataset = {given!r}: expected a Dataset, which tendonlab.load makes of a folder")

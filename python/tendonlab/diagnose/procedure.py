@@ -14,6 +14,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset
+from tendonlab.data.dataset import require_dataset
 from tendonlab.diagnose import floor as noise
 from tendonlab.diagnose.case import Case, fine_enough, make_case
 from tendonlab.diagnose.compose import compose
@@ -44,6 +45,7 @@ def diagnose(
     `library`: "default", every effect that the system takes, or names as "joint:stribeck". `seed`: the bootstrap's.
     Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect or a
     `seed` that is no whole number. Ctrl-C stops it. Source: DIAGNOSIS section 2."""
+    require_dataset(dataset)
     began, seed = time.monotonic(), checked(seed)
     names = _library(dataset, library)
     case = make_case(dataset, system)
