@@ -81,13 +81,14 @@ def choose(dataset: Dataset, system: System) -> Replay:
 def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
     """The experiment for the core: its inputs, its loop and an initial state estimated from the first samples.
 
-    Raises DatasetError where a signal that the replay needs was not logged."""
+    Raises DatasetError where a signal that the replay needs was not logged, or is no row of numbers in time."""
+    _require_time(experiment)
     data, time = experiment.data, experiment.time
     outputs = system.info.outputs
     measured = np.full((len(outputs), len(time)), np.nan)
     for c, signal in enumerate(outputs):
         if signal.name in data.columns:
-            measured[c] = data[signal.name].to_numpy(dtype=float)
+            measured[c] = _samples(experiment, signal.name)
     position, velocity, free, sd = _initial_state(experiment, system, measured)
     core = _core.Experiment(
         kind=system.kind,
@@ -102,6 +103,21 @@ def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
         name=experiment.name, core=core, measured=measured, initial=tuple(free), initial_sd=tuple(sd),
         position_scale=scale[0], velocity_scale=scale[1],
     )  # fmt: skip
+
+
+def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
+    """The experiment, or one made of a frame. Raises ParameterError for anything else, such as a name, DatasetError for
+    a frame whose time is a column."""
+    from tendonlab.data import Experiment
+
+    if isinstance(given, Experiment):
+        return given
+    if not isinstance(given, pd.DataFrame):
+        told = "expected an experiment of a dataset, such as dataset['run-1'], or a frame indexed by time"
+        raise ParameterError(f"experiment is of type {type(given).__name__}: {told}")
+    if "t" in given.columns:
+        raise DatasetError("column 't' stands beside the index: expected it as the index, as set_index('t') gives it")
+    return Experiment(name="given", data=given)
 
 
 def simulate(
@@ -132,31 +148,6 @@ def simulate(
         num_attempts=run["attempts"],
         num_events=run["events"],
     )
-
-
-def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
-    """An experiment as it is, or one with the signals of a frame.
-
-    Raises ParameterError for anything else, DatasetError where the index is no time in s or a column stands twice."""
-    from tendonlab.data import Experiment
-
-    if isinstance(given, Experiment):
-        return given
-    if not isinstance(given, pd.DataFrame):
-        told = "expected an experiment of a dataset, or a frame indexed by time, s"
-        raise ParameterError(f"experiment is a {type(given).__name__}: {told}")
-    return Experiment(name="given", data=_by_time(given))
-
-
-def _by_time(frame: pd.DataFrame) -> pd.DataFrame:
-    if frame.index.dtype.kind not in "iuf":
-        raise DatasetError(f"index of the frame is of type {frame.index.dtype}: expected times, s, as numbers")
-    if "t" in frame.columns:
-        raise DatasetError("column 't' stands beside the index: expected it as the index, as set_index('t') gives it")
-    twice = frame.columns[frame.columns.duplicated()]
-    if len(twice):
-        raise DatasetError(f"column {twice[0]!r} stands there {list(frame.columns).count(twice[0])} times")
-    return frame
 
 
 def _there(system: System, experiment: Experiment) -> System:
@@ -190,16 +181,30 @@ def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_cor
     return signals
 
 
-def _finite(experiment: Experiment, name: str) -> np.ndarray:
-    """The samples of an input or reference, all of them numbers, at instants that increase."""
-    time, column = experiment.time, experiment.data[name]
-    try:
-        values = column.to_numpy(dtype=float)
-    except (TypeError, ValueError) as error:
-        raise DatasetError(f"{experiment.name}: {name} is of type {column.dtype}; expected numbers") from error
-    if len(time) > 1 and not np.all(np.diff(time) > 0):
+def _require_time(experiment: Experiment) -> None:
+    """Raise DatasetError unless the frame is indexed by instants, s, that increase."""
+    index = experiment.data.index
+    if index.dtype.kind not in "iuf":
+        raise DatasetError(f"{experiment.name}: the index is of type {index.dtype}; expected time in s, as numbers")
+    time = experiment.time
+    if len(time) > 1 and not np.all(np.diff(time) > 0):  # NaN fails here too
         k = int(np.argmin(np.diff(time) > 0)) + 1
         raise DatasetError(f"{experiment.name}: time[{k}] = {time[k]} s after {time[k - 1]} s; expected it to increase")
+
+
+def _samples(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of a signal, NaN where it was not measured."""
+    column = experiment.data[name]
+    if column.ndim != 1:
+        raise DatasetError(f"{experiment.name}: {name} stands there {column.shape[1]} times; expected one column")
+    if column.dtype.kind not in "biuf":
+        raise DatasetError(f"{experiment.name}: {name} is of type {column.dtype}; expected real numbers")
+    return np.asarray(column.to_numpy(dtype=float, na_value=np.nan))
+
+
+def _finite(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of an input, all of them numbers."""
+    values, time = _samples(experiment, name), experiment.time
     broken = np.flatnonzero(~np.isfinite(values))
     if broken.size:
         k = int(broken[0])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from html import escape
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.catalog import AXES, LEVEL, MEMORY, SystemInfo, nearest, parameter_unit, system_info
@@ -34,6 +35,8 @@ class System:
     def __post_init__(self) -> None:
         if self.axis not in AXES:
             raise ParameterError(f"axis = {self.axis!r}: expected one of {', '.join(AXES)}")
+        if isinstance(self.effects, str):
+            raise ParameterError(f"effects = {self.effects!r}: expected a list such as [{self.effects!r}]")
         for name in self.effects:
             self._require_company(name)
         known = self._own_names()
@@ -76,6 +79,8 @@ class System:
 
         Parameters go by their own or their full name, values are SI. An effect whose amplitude is exactly 0 changes
         nothing, to the last bit. Raises ParameterError for an unknown effect or parameter, or where one is missing."""
+        if not isinstance(effects, Mapping) or not all(isinstance(given, Mapping) for given in effects.values()):
+            raise ParameterError(f"effects = {effects!r}: expected {{effect: {{parameter: value}}}}")
         values = dict(self.parameters)
         names = list(self.effects)
         for name, given in effects.items():
@@ -155,8 +160,8 @@ class System:
         if name not in self.parameters and row.purpose != "share":
             raise ParameterError(f"{name}: missing; {expected} ({row.meaning})")
         value = self.parameters.get(name, row.typical)
-        if not row.lower <= value <= row.upper:
-            raise ParameterError(f"{name} = {value}: {expected}")
+        if not isinstance(value, Real) or not row.lower <= value <= row.upper:
+            raise ParameterError(f"{name} = {value!r}: {expected}")
 
     def _own_names(self) -> list[str]:
         """Parameters of the system itself, of what is structural, and of its effects."""

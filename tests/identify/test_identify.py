@@ -282,7 +282,7 @@ def test_what_cannot_be_identified_is_told(fit: Any) -> None:
     ):
         with pytest.raises(ParameterError, match=told):
             identify(rig(), progress=False, **given)  # type: ignore[arg-type]
-    with pytest.raises(ParameterError, match="dataset = 'rig-42': expected a Dataset, as load"):
+    with pytest.raises(ParameterError, match="dataset = 'rig-42': expected a Dataset"):
         identify("rig-42", progress=False)  # type: ignore[arg-type]
     for given, told in (({"num_points": 1}, "num_points = 1"), ({"reach": 0.0}, "reach = 0.0: expected a positive")):
         with pytest.raises(ParameterError, match=told):

@@ -207,6 +207,6 @@ class Dataset:
 
 
 def require_dataset(given: object) -> None:
-    """Raise ParameterError unless `given` is a Dataset."""
+    """Raise ParameterError for anything but a dataset, such as the folder of one."""
     if not isinstance(given, Dataset):
-        raise ParameterError(f"dataset = {given!r:.60}: expected a Dataset, as load(folder) gives it")
+        raise ParameterError(f"dataset = {given!r:.60}: expected a Dataset, which tendonlab.load makes of a folder")
