@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tendonlab.catalog import parameter_unit, unit
 from tendonlab.confusions import confusions
 from tendonlab.report.numbers import number, prefixed, probability, span, unit_text
-from tendonlab.report.words import REPLAYS, capital, gain_words, listing, parameter_words, phrase
+from tendonlab.report.words import REPLAYS, capital, gain_words, listing, parameter_words, phrase, separation
 
 if TYPE_CHECKING:
     from tendonlab.catalog import Effect, SystemInfo
@@ -119,9 +119,8 @@ def _open_questions(diagnosis: Diagnosis) -> str:
 
 
 def _experiment(item: Any) -> str:
-    pair = item.get("separates") or []
-    separates = listing(pair, last="from" if len(pair) == 2 else "and")
-    aside = [f"separates {separates}" if separates else "", gain_words(item.get("expected_gain"))]
+    names = item.get("separates") or []
+    aside = [separation(names) if names else "", gain_words(item.get("expected_gain"))]
     told = "; ".join(part for part in aside if part)
     return capital(str(item["description"])) + (f" ({told})" if told else "")
 

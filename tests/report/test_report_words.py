@@ -116,3 +116,15 @@ def test_the_sentence_is_never_surer_than_its_verdict(with_effect: Diagnosis) ->
 )
 def test_gains_in_words(nats: float | None, told: str) -> None:
     assert words.gain_words(nats) == told
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (["slack"], "shows whether there is slack"),
+        (["slack", "backlash"], "separates slack from backlash"),
+        (["slack", "backlash", "delay"], "separates slack, backlash and delay"),
+    ],
+)
+def test_what_an_experiment_decides(names: list[str], told: str) -> None:
+    assert words.separation(names) == told

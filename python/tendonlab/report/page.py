@@ -43,6 +43,7 @@ def _environment() -> Environment:
         "phrase": words.phrase,
         "capital": words.capital,
         "listing": words.listing,
+        "separation": words.separation,
         "plainly": _plainly,
         "element": words.element_words,
         "gain": words.gain_words,
@@ -245,7 +246,7 @@ def _plainly(value: Any) -> str:
     if isinstance(value, Mapping):
         return "; ".join(f"{words.words(str(key))} {_plainly(item)}" for key, item in value.items())
     if isinstance(value, list | tuple):
-        return ", ".join(_plainly(item) for item in value)
+        return ", ".join(_plainly(item) for item in value) or "none"
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: numbers.ABSENT}[value]
     return numbers.number(float(value), 4) if isinstance(value, int | float) else str(value)

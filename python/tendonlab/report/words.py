@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from tendonlab.report.numbers import number
 
@@ -106,6 +106,13 @@ def listing(items: Iterable[str], *, last: str = "and") -> str:
     """ "a", "a and b", "a, b and c"."""
     *head, tail = list(items) or [""]
     return f"{', '.join(head)} {last} {tail}" if head else tail
+
+
+def separation(names: Sequence[str]) -> str:
+    """What an experiment would decide between: causes, or a cause and none."""
+    if len(names) == 1:
+        return f"shows whether there is {names[0]}"
+    return f"separates {listing(names, last='from' if len(names) == 2 else 'and')}"
 
 
 def gain_words(nats: float | None) -> str:
