@@ -136,6 +136,8 @@ def _round(
     )
     bar = _bar(fitter, before)
     chosen = [x for x in leads if x.gain > HOPEFUL * bar.evidence][: NUM_REFIT_AGAIN if before else NUM_REFIT]
+    if _strained(fitter, best):  # what cannot be simulated from there may well be from what was believed
+        chosen += [x for x in leads if not x.simulated]
     first = _refit(fitter, best, chosen[0], rival=None) if chosen else []
     rival = max((t.evidence_gain for t in first), default=0.0)
     rest = pool.map(lambda lead: _refit(fitter, best, lead, rival=rival), chosen[1:])
@@ -169,7 +171,7 @@ def _holds(fitter: Fitter, best: Fitted, trial: Trial, *, further: bool) -> bool
 def _refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> list[Trial]:
     """The best fit over the starts of a lead."""
     found: Fitted | None = None
-    for values in lead.starts:
+    for values in lead.starts if lead.simulated else ():
         found = _better(found, fitter, best, {lead.effect: values}, rival=rival)
     if _strained(fitter, best) and (found is None or found.mean_square > NEAR_FLOOR):
         found = _better(found, fitter, best, {lead.effect: lead.starts[0]}, rival=rival, believed=True)
