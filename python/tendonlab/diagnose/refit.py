@@ -20,9 +20,9 @@ def refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> F
     """The best fit of `best` with the effect of `lead` over its starts, None where none succeeds; one that lies far
     behind `rival`, an evidence gained, is not finished."""
     found: Fitted | None = None
-    for values in lead.starts:
+    for values in lead.starts if lead.simulated else ():
         found = _better(found, fitter, best, {lead.effect: values}, rival=rival)
-    if _strained(fitter, best) and (found is None or found.mean_square > NEAR_FLOOR):
+    if strained(fitter, best) and (found is None or found.mean_square > NEAR_FLOOR):
         found = _better(found, fitter, best, {lead.effect: lead.starts[0]}, rival=rival, believed=True)
     return found
 
@@ -54,7 +54,7 @@ def _better(
     return fitted if found is None or fitted.evidence > found.evidence else found
 
 
-def _strained(fitter: Fitter, best: Fitted) -> bool:
+def strained(fitter: Fitter, best: Fitted) -> bool:
     """Was a nominal parameter tuned further than is believable? It makes up for what is missing, and once that is
     there, its value is no good place to start from."""
     known = fitter.case.dataset.parameters

@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from tendonlab.diagnose.confirm import NEAR_FLOOR, confirmed
 from tendonlab.diagnose.fits import Fitted, Fitter
-from tendonlab.diagnose.refit import refit
+from tendonlab.diagnose.refit import refit, strained
 from tendonlab.diagnose.screen import Lead, candidates, screen
 from tendonlab.errors import NumericalError
 
@@ -113,6 +113,8 @@ def another(fitter: Fitter, best: Fitted, *, most: float, shop: Workshop) -> Rou
         return None
     bar = again(fitter, most) if further else DETECT
     chosen = [x for x in leads if x.gain > HOPEFUL * bar.evidence][: NUM_REFIT_AGAIN if further else NUM_REFIT]
+    if strained(fitter, best):  # what cannot be simulated from there may well be from what was believed
+        chosen += [x for x in leads if not x.simulated]
     trials = shop.refit(fitter, best, chosen, label)
     passed = {t.effect for t in trials if bar.passed(t)}
     if trials and trials[0].effect in passed and not _holds(fitter, best, trials[0], further=further):

@@ -23,12 +23,13 @@ INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to
 @dataclass(frozen=True)
 class Lead:
     """A candidate as the screen saw it: expected gain in nats, starting values for its fits, best first, and the gain
-    that an effect of typical size would bring (its visibility)."""
+    that an effect of typical size would bring (its visibility). `simulated`: whether the model ran with it at all."""
 
     effect: str
     gain: float
     starts: tuple[dict[str, float], ...]
     visibility: float
+    simulated: bool = True
 
 
 def candidates(case: Case, best: Fitted) -> list[str]:
@@ -76,7 +77,8 @@ def screen(fitter: Fitter, best: Fitted, effect: str) -> Lead:
                 except NumericalError:
                     continue
     if not found:
-        return Lead(effect, 0.0, (start,), 0.0)
+        typical = {p.name: AMPLITUDES[-1] * _unit(fitter.case, p) for p in rows if p.amplitude}
+        return Lead(effect, 0.0, ({**start, **typical},), 0.0, simulated=False)
     found.sort(key=lambda f: -f[0])
     starts = [found[0][1]]
     for _, values, _ in found[1:]:
@@ -96,8 +98,7 @@ def _score(
 ) -> tuple[float, dict[str, float], float]:
     """Expected gain, the values to start a fit from, and the gain of a typical effect."""
     case = fitter.case
-    scale = (case.scales.get(p.element or "") or next(iter(case.scales.values()))).of(p.dimension) * abs(p.typical)
-    unit = 1.0 if p.purpose == "share" else scale
+    unit = _unit(case, p)
     values = {**shaped, p.name: amplitude * unit}
     moved = _whitened(fitter, best, values, effect=effect)
     directions = [(m - b) / amplitude for m, b in zip(moved, base, strict=True)]
@@ -109,6 +110,13 @@ def _score(
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
     start = p.typical if p.purpose == "share" else at * unit  # a share is held at its typical value in fits
     return gain, {**values, p.name: start}, 0.5 * curvature
+
+
+def _unit(case: Case, p: Parameter) -> float:
+    """The typical size of an amplitude on this rig."""
+    if p.purpose == "share":
+        return 1.0
+    return (case.scales.get(p.element or "") or next(iter(case.scales.values()))).of(p.dimension) * abs(p.typical)
 
 
 def _products(best: Fitted, directions: list[np.ndarray], base: list[np.ndarray]) -> tuple[Any, ...]:
