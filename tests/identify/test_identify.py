@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 from concurrent.futures import as_completed
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -227,6 +228,14 @@ def test_results_come_as_plain_types_and_pictures(fit: Any) -> None:
     assert "<table" in fit._repr_html_()
     axes = fit.plot(experiment="run-2")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "residual (noise sd)")
+
+
+def test_fits_that_run_at_once_give_the_same_bits() -> None:
+    """Unknown initial states are summed in the same order, wherever they lie in memory."""
+    runs = [replace(run, initial={}) for run in (measure(f"run-{k}", k, seed=1) for k in range(8))]
+    with ThreadPoolExecutor(4) as pool:
+        found = pool.map(lambda _: tuple(identify(rig(*runs), progress=False).values.values()), range(8))
+    assert len(set(found)) == 1
 
 
 def test_an_experiment_that_did_not_measure_the_motor_is_named() -> None:

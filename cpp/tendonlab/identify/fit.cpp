@@ -17,7 +17,28 @@ namespace tendonlab::identify {
 namespace {
 constexpr int along_bounds = 3, most_rounds = 10;  ///< steps along the same bounds that make a crawl; solves of a fit
 using Vector = Eigen::VectorXd;
-using Coordinates = std::vector<Vector>;  ///< of the free states, a vector a task
+
+/// Those of the free states, a stretch a task, in one piece of memory: Ceres sums over blocks in the order of their
+/// addresses, and the same fit shall give the same bits.
+class Coordinates {
+ public:
+  void append(const Vector& task) {
+    const auto old = all.size();
+    all.conservativeResize(old + task.size());
+    all.tail(task.size()) = task;
+    ends.push_back(all.size());
+  }
+  std::size_t size() const { return ends.size(); }
+  Eigen::Map<Vector> operator[](std::size_t task) { return {all.data() + begin(task), ends[task] - begin(task)}; }
+  Eigen::Map<const Vector> operator[](std::size_t task) const {
+    return {all.data() + begin(task), ends[task] - begin(task)};
+  }
+
+ private:
+  Eigen::Index begin(std::size_t task) const { return task == 0 ? 0 : ends[task - 1]; }
+  Vector all;
+  std::vector<Eigen::Index> ends;
+};
 
 /// Hands one experiment to Ceres. No exception may cross it: the first one is kept, and told after the solve.
 class TaskCost final : public ceres::CostFunction {
@@ -119,10 +140,9 @@ void add_priors(const Problem& problem, Vector& x, Coordinates& z, ceres::Proble
     mean(known[row]) = free.mean;
   }
   if (!known.empty()) to.AddResidualBlock(new ceres::NormalPrior(weight, mean), nullptr, x.data());
-  for (Vector& states : z)
-    if (const auto n = states.size(); n > 0)
-      to.AddResidualBlock(new ceres::NormalPrior(ceres::Matrix::Identity(n, n), Vector::Zero(n)), nullptr,
-                          states.data());
+  for (std::size_t e = 0; e < z.size(); ++e)
+    if (const auto n = z[e].size(); n > 0)
+      to.AddResidualBlock(new ceres::NormalPrior(ceres::Matrix::Identity(n, n), Vector::Zero(n)), nullptr, z[e].data());
 }
 
 void add_bounds(const Problem& problem, Vector& x, ceres::Problem& to) {
@@ -145,9 +165,9 @@ ceres::Solver::Options solver_options(const Options& options, Vector& x, Coordin
   with.update_state_every_iteration = true;  // for Watch
   with.linear_solver_type = ceres::DENSE_QR;
   auto order = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (Vector& states : z)
-    if (states.size() > 0) {
-      order->AddElementToGroup(states.data(), 0);  // each couples only to x: eliminated first
+  for (std::size_t e = 0; e < z.size(); ++e)
+    if (z[e].size() > 0) {
+      order->AddElementToGroup(z[e].data(), 0);  // each couples only to x: eliminated first
       with.linear_solver_type = ceres::DENSE_SCHUR;
     }
   if (x.size() > 0) order->AddElementToGroup(x.data(), 1);
@@ -216,8 +236,8 @@ Coordinates start_of_states(const Problem& problem) {
   Coordinates z;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
     const Prediction prediction(problem, e);
-    z.push_back(problem.initial.empty() ? Vector(Vector::Zero(prediction.num_initial()))
-                                        : prediction.coordinates(problem.initial[e]));
+    z.append(problem.initial.empty() ? Vector(Vector::Zero(prediction.num_initial()))
+                                     : prediction.coordinates(problem.initial[e]));
   }
   return z;
 }
