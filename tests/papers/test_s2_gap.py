@@ -64,21 +64,30 @@ def test_the_disturbance_goes_with_the_screw_and_not_with_time() -> None:
         s2.order_spectrum(np.zeros(5), np.zeros(5))
 
 
+HOLDS = ["stiction:hold", "joint:coulomb", "joint:viscous", "gear:ripple", "bushing_1:coulomb", "load:offset"]
+
+
 def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path) -> None:
-    """Whatever keeps the joint from creeping back holds the sense. Friction of the joint does, and stiction of the
-    guides: these logs cannot tell, and the diagnosis says so."""
+    """Whatever keeps the joint from creeping back holds the sense: stiction of the guides, and dry friction of the
+    joint. Without repeats these logs cannot tell, and the diagnosis says so, and what would."""
     rig = s2.write_dataset(tmp_path, RIG, hold=True)
-    library = ["stiction:hold", "joint:coulomb", "joint:viscous", "gear:ripple", "bushing_1:coulomb", "load:offset"]
-    found = tl.diagnose(rig, library=library, progress=False)
+    found = tl.diagnose(rig, library=HOLDS, progress=False)
     assert found.verdict == "effect"
-    holds = {"stiction:hold", "joint:coulomb", "joint:viscous"}
-    assert set(found.selected) <= holds
-    assert len(found.selected) == 1
-    assert any("stiction:hold" in group and len(holds & set(group)) > 1 for group in found.indistinguishable)
+    assert list(found.selected) == ["stiction:hold"]
+    assert found.indistinguishable == (("stiction:hold", "joint:coulomb"),)
     assert found.shrinkage["from_refitted"]["value"] > 0.8
     (proposal,) = found.next_experiments
     assert {"stiction:hold", "joint:coulomb"} <= set(proposal["separates"])
     assert "pushes on the resting joint" in proposal["description"]
+
+
+def test_a_run_made_twice_tells_a_hold_from_friction_of_the_joint(tmp_path: Path) -> None:
+    rig = s2.write_dataset(tmp_path, RIG, hold=True, repeated=True, seed=1)
+    found = tl.diagnose(rig, library=HOLDS, progress=False)
+    assert found.verdict == "effect"
+    assert list(found.selected) == ["stiction:hold"]
+    assert not found.indistinguishable
+    assert found.shrinkage["from_refitted"]["value"] > 0.8
 
 
 def test_cables_that_are_softer_at_low_tension_are_told_from_everything(tmp_path: Path) -> None:

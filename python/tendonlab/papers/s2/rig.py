@@ -69,19 +69,17 @@ def log_of_twin(
     ripple: float = 0.0,
     hold: bool = False,
     toe_tension: float = 0.0,
-    as_done: bool = False,
     seed: int = 0,
 ) -> pd.DataFrame:
-    """One record of the twin at 50 Hz: `actuator_velocity` of the drive, as it was asked for or `as_done`, which is
-    half a step of 1 ms later, and what the sensors read.
+    """One record of the twin at 50 Hz: `actuator_velocity` as the drive did it, half a step of 1 ms after it was asked
+    for (30 urad of the joint), and what the sensors read.
 
     Forces are left out (NaN) within 0.1 s of the start and end of every move: a jump that falls between two samples
     says nothing of its size (S2 sec. IV-B.3 leaves out 1 s)."""
     sense: Sense = "hold" if hold else "instantaneous"
     run = simulate(of, of_reference, ripple=ripple, sense=sense, toe_tension=toe_tension)
-    velocity = nut_input(of, of_reference)
-    if as_done:  # the twin holds a velocity from step to step
-        velocity = 0.5 * (velocity + velocity.shift(1, fill_value=0.0))
+    asked = nut_input(of, of_reference)
+    velocity = 0.5 * (asked + asked.shift(1, fill_value=0.0))  # the twin holds it from step to step
     log = velocity.iloc[::EVERY].join(measured(run.iloc[::EVERY], seed=seed))
     for instant in np.ravel(of_reference.moves):
         near = np.abs(log.index.to_numpy() - instant) < AROUND_JUMPS
@@ -101,7 +99,7 @@ def write_dataset(
 ) -> Dataset:
     """Write logs of a twin with the withheld effects `ripple`, `hold` and `toe_tension`, N, into `folder` as a dataset
     whose simulator has none of them, and load it. `repeated`: one run is made twice, which tells noise from what the
-    simulator lacks, and the drive logs what it did instead of what it was asked for (30 urad of the joint)."""
+    simulator lacks."""
     into = Path(folder)
     into.mkdir(parents=True, exist_ok=True)
     lines = ['format = "tendonlab-dataset/1"', 'name = "s2-twin"']
@@ -120,7 +118,6 @@ def write_dataset(
             ripple=ripple,
             hold=hold,
             toe_tension=toe_tension,
-            as_done=repeated,
             seed=1000 * seed + k,
         )
         record.to_csv(into / f"{name}.csv")
