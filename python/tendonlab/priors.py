@@ -79,8 +79,9 @@ class Free:
         return min(max(self.value(self.mean), self.lower), self.upper)
 
     def started(self, value: float) -> Free:
-        """The same, started elsewhere (inside its bounds)."""
-        return replace(self, start=min(max(value, self.lower), self.upper))
+        """The same, started elsewhere (inside its bounds). A logarithm starts at no 0, to which a long step may go."""
+        least = max(self.lower, self.value(-LARGEST)) if self.log else self.lower
+        return replace(self, start=min(max(value, least), self.upper))
 
 
 def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
