@@ -42,7 +42,7 @@ def test_elastic_ends_are_found_with_the_contacts_free(tmp_path: Path) -> None:
     """What the paper keeps as in Table III may move by 30 %. Without the ends it moves to where no contact is (mu_s to
     next to nothing), and from there no fit finds back: the ends are fitted from what was believed, too."""
     believed = s4.nominal(knows_direction=True)
-    rig = tl.load(s4.write_rig(tmp_path / "free", s4.case("E2"), believed, name="free", duration=3.0))
+    rig = tl.load(s4.write_rig(tmp_path / "free", s4.case("E2"), believed, name="free", duration=2.0))
     free = {name: replace(rig.parameters[name], sd=0.3 * rig.parameters[name].value) for name in KEPT}
     rig = replace(rig, parameters={**rig.parameters, **free})
     found = tl.diagnose(rig, library=["ends:compliance", "sensor.tension_23:delay"], progress=False)

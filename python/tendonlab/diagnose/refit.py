@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from tendonlab.diagnose.confirm import NEAR_FLOOR
@@ -50,6 +51,8 @@ def _better(
         if not (fitted.converged or behind or worse):
             fitted = fitter.fit(fitted.system, added=added, initial=fitted.initial, max_iterations=40)
     except (NumericalError, ParameterError):
+        return found
+    if not math.isfinite(fitted.evidence):  # derivatives that explode tell nothing, and would outbid everything
         return found
     return fitted if found is None or fitted.evidence > found.evidence else found
 
