@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
-from tendonlab import cli
+from tendonlab.cli import commands as cli
 from twin import TwinDiagnosis
 
 ROOT = Path(__file__).resolve().parents[1]

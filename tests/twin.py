@@ -6,12 +6,12 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from tendonlab.diagnose import Diagnosis
+from tendonlab.report.diagnosis import Diagnosis
 
 _DEMO = """
 import pickle, sys
 from pathlib import Path
-from tendonlab import cli, demo
+from tendonlab.cli import commands as cli, demo
 
 def kept(*given, **options):
     found = run(*given, **options)

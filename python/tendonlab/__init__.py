@@ -3,15 +3,16 @@
 from importlib.metadata import version as _version
 
 from tendonlab._core import actuation, friction, loading, sensing, sheath, transmission
-from tendonlab.catalog import kinds, system_info
 from tendonlab.data import Dataset, Experiment, load
-from tendonlab.diagnose import Diagnosis, diagnose
+from tendonlab.diagnosis.diagnose import diagnose
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
-from tendonlab.identify import Identification, identify
-from tendonlab.routing import BranchLosses, Reducer, TendonTransmission
-from tendonlab.sweep import sweep
-from tendonlab.system import System
-from tendonlab.trajectory import Trajectory
+from tendonlab.identification.identify import Identification, identify
+from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
+from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.simulation.catalog import kinds, system_info
+from tendonlab.simulation.sweep import sweep
+from tendonlab.simulation.system import System
+from tendonlab.simulation.trajectory import Trajectory
 
 __version__ = _version("tendonlab")
 __all__ = [

@@ -2,6 +2,6 @@
 
 import sys
 
-from tendonlab.cli import main
+from tendonlab.cli.commands import main
 
 sys.exit(main())

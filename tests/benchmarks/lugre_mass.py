@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.signals import smooth
-from tendonlab.system import System
+from tendonlab.simulation.signals import smooth
+from tendonlab.simulation.system import System
 
 TIME = np.linspace(0.0, 1.0, 1001)
 MASS, AMPLITUDE = 1.0, 2.0

@@ -15,11 +15,11 @@ import pandas as pd
 import pytest
 from sealed_cases import Drawn
 
-from tendonlab.blind import commands, draw, run, score
+from tendonlab.blind import commands, draw, run, runner, score
 from tendonlab.blind.commands import add_parser
-from tendonlab.blind.draw import plan
+from tendonlab.blind.drawing import plan
 from tendonlab.blind.rig import EFFECTS
-from tendonlab.blind.run import command
+from tendonlab.blind.runner import command
 from tendonlab.blind.twin import make_twin
 
 ROOT = Path(__file__).parents[2]
@@ -121,7 +121,7 @@ def fake_reports(monkeypatch: pytest.MonkeyPatch, sealed: Path, *, right: bool) 
         script = f"import pathlib; pathlib.Path({str(out / 'report.json')!r}).write_text({json.dumps(report)!r})"
         return [sys.executable, "-c", script]
 
-    monkeypatch.setattr(sys.modules["tendonlab.blind.run"], "command", answer)
+    monkeypatch.setattr(runner, "command", answer)
 
 
 @pytest.mark.parametrize("right", [True, False])
@@ -152,8 +152,7 @@ def test_changed_report_is_noticed(drawn: Drawn, tmp_path: Path, monkeypatch: py
 
 def test_failed_case_is_recorded(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     script = "import sys; sys.exit('out of luck')"
-    module = sys.modules["tendonlab.blind.run"]
-    monkeypatch.setattr(module, "command", lambda case, out: [sys.executable, "-c", script])
+    monkeypatch.setattr(runner, "command", lambda case, out: [sys.executable, "-c", script])
     verdicts = json.loads(run(drawn.cases, tmp_path, progress=False).read_text())["reports"]
     assert verdicts["case-001"] == {"verdict": "failed", "message": "exit 1: out of luck"}
     assert score(drawn.sealed, tmp_path).summary["top1"] == 0.0

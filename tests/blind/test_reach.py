@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from sealed_cases import Drawn
 
-from tendonlab.blind import reach, run, score
+from tendonlab.blind import reach, run, runner, score
 from tendonlab.blind.twin import make_twin
 
 
@@ -22,7 +22,7 @@ def rig(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder study/cases with nothing else near it; cases that are diagnosed all the same fail at once."""
     shutil.copytree(drawn.cases, tmp_path / "study" / "cases")
     script = "raise SystemExit('diagnosed')"
-    monkeypatch.setattr(sys.modules["tendonlab.blind.run"], "command", lambda case, out: [sys.executable, "-c", script])
+    monkeypatch.setattr(runner, "command", lambda case, out: [sys.executable, "-c", script])
     return tmp_path
 
 

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
-from tendonlab import demo
-from tendonlab.cli import main
+from tendonlab.cli import demo
+from tendonlab.cli.commands import main
 from twin import TwinDiagnosis
 
 Printed = pytest.CaptureFixture[str]

@@ -8,8 +8,8 @@ from importlib import import_module
 
 import numpy as np
 
-from tendonlab.catalog import LEVEL, MEMORY, SystemInfo, system_info
-from tendonlab.system import System
+from tendonlab.simulation.catalog import LEVEL, MEMORY, SystemInfo, system_info
+from tendonlab.simulation.system import System
 
 T = np.linspace(0.0, 1.0, 201)
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.signals import hold, linear, smooth
-from tendonlab.system import System
+from tendonlab.simulation.signals import hold, linear, smooth
+from tendonlab.simulation.system import System
 
 MAKE = {"hold": hold, "linear": linear, "smooth": smooth}
 INERTIAS: dict[str, float] = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from integrate.rig import FRICTION, NOMINAL, controller, differences, joint, pair, relative, run
-from tendonlab.signals import hold, linear, smooth
+from tendonlab.simulation.signals import hold, linear, smooth
 
 T = np.linspace(0.0, 2.0, 401)
 COMMAND = 0.06 * np.sin(2 * np.pi * T) + 0.03 * np.sin(2 * np.pi * 2.3 * T + 1.0)

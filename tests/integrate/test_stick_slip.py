@@ -7,7 +7,7 @@ import pytest
 
 from integrate.reference_stick_slip import DRAG, GOLDEN, LOOP, PARAMETERS
 from integrate.rig import NOMINAL, controller, pair, relative, run
-from tendonlab.signals import linear
+from tendonlab.simulation.signals import linear
 
 EFFECTS = (*NOMINAL, "joint:stribeck")
 

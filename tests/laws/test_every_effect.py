@@ -7,8 +7,8 @@ import pytest
 
 from examples import T, example, with_effect
 from integrate.rig import differences, relative, run
-from tendonlab.catalog import LEVEL, REFINES, kinds, system_info
-from tendonlab.system import System
+from tendonlab.simulation.catalog import LEVEL, REFINES, kinds, system_info
+from tendonlab.simulation.system import System
 
 
 def pairs() -> list[tuple[str, str]]:

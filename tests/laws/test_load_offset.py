@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tendonlab import _core
-from tendonlab.system import System
+from tendonlab.simulation.system import System
 
 
 def rest(output: str, **parameters: float) -> float:

@@ -7,9 +7,10 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
-from tendonlab import _core, replay
+from tendonlab import _core
 from tendonlab.data import Experiment
 from tendonlab.papers.s0 import bench, experiments, models, twin
+from tendonlab.simulation import prepare as replay
 
 NAMES = {
     "coulomb", "static_friction", "stribeck_velocity", "viscous", "load_exponent", "peak_exponent",
@@ -141,7 +142,7 @@ def test_a_load_that_is_not_positive_is_refused() -> None:
 
 def test_curves_are_no_candidates_beside_one_another() -> None:
     """A whole curve is a simulator's choice: the diagnosis looks for terms that it lacks."""
-    from tendonlab.catalog import WHOLE
+    from tendonlab.simulation.catalog import WHOLE
 
     whole = {e.name for e in tl.system_info("friction_map").effects if e.roles & WHOLE}
     assert whole == {"contact:static_lugre", "contact:load_and_ratio"}

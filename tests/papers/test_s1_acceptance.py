@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import tendonlab as tl
+from tendonlab.mechanics.tendons import Propagation, TendonTransmission
 from tendonlab.papers import s1
 from tendonlab.papers.s1.experiments import NOISY_SPEEDS
 from tendonlab.papers.s1.twin import inverse_statics
-from tendonlab.routing import Propagation, TendonTransmission
 
 RNG = np.random.default_rng(1)
 STATES = 1000
@@ -110,7 +110,7 @@ def test_a4_losses_of_tension_bias_both_strategies() -> None:
 
 
 def test_a5_reducer() -> None:
-    from tendonlab.routing import Reducer, back_driven_efficiency
+    from tendonlab.mechanics.tendons import Reducer, back_driven_efficiency
 
     assert back_driven_efficiency(0.5) == 0.0
     up_and_down = s1.reducer_loop()

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tendonlab.mechanics.tendons import Reducer, TendonTransmission, back_driven_efficiency
 from tendonlab.papers.s1 import (
     BallBearing,
     decompose,
@@ -18,7 +19,6 @@ from tendonlab.papers.s1 import (
 )
 from tendonlab.papers.s1.bearing import RPM
 from tendonlab.papers.s1.experiments import compensated
-from tendonlab.routing import Reducer, TendonTransmission, back_driven_efficiency
 
 GOLDEN = json.loads((Path(__file__).parents[1] / "golden" / "papers" / "S1.json").read_text(encoding="utf-8"))
 CHECKS = {check["name"]: check for check in GOLDEN["checks"]}

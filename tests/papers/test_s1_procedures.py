@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
 from tendonlab.papers import s1
-from tendonlab.routing import BranchLosses, Reducer, TendonTransmission
 
 
 def test_what_is_no_transmission_is_refused() -> None:

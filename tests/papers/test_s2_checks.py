@@ -6,8 +6,8 @@ import pytest
 
 import tendonlab as tl
 from papers.s2_golden import CHECKS, named
-from tendonlab.bondgraph import derive
 from tendonlab.data import Experiment
+from tendonlab.mechanics.bondgraph import derive
 from tendonlab.papers import s2
 
 RIG = s2.constants()

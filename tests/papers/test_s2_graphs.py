@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tendonlab.bondgraph import derive
+from tendonlab.mechanics.bondgraph import derive
 from tendonlab.papers.s2 import constants, equations, graphs
 
 RIG = constants().with_(phi=0.3)

@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 
 import tendonlab as tl
 from integrate.rig import differences, relative, run
-from tendonlab.bondgraph import derive
 from tendonlab.data import Experiment
+from tendonlab.mechanics.bondgraph import derive
 from tendonlab.papers import s2
 
 RIG = s2.constants()

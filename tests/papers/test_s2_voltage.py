@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from integrate.rig import differences, relative, run
 from tendonlab.papers import s2
-from tendonlab.system import System
+from tendonlab.simulation.system import System
 
 RIG = s2.constants(viscous_reading="C")
 T = np.linspace(0.0, 2.0, 401)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import tendonlab as tl
-from tendonlab.diagnose import Diagnosis
 from tendonlab.papers import s4
+from tendonlab.report.diagnosis import Diagnosis
 
 TOLD = ("bristle_stiffness", "contact_viscous")
 KEPT = ("static_friction_coefficient", "stribeck_velocity", "bristle_stiffness", "bristle_damping")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.errors import ParameterError
+from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission, back_driven_efficiency
 from tendonlab.procedures import (
     LoadCell,
     MapPoint,
@@ -20,7 +21,6 @@ from tendonlab.procedures import (
     sort_markers,
     wrap_angle_uncertainty,
 )
-from tendonlab.routing import BranchLosses, Reducer, TendonTransmission, back_driven_efficiency
 
 U = np.linspace(0.0, 1.5, 8)
 MARKERS = np.column_stack([np.sin(U), np.cos(U)])

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tendonlab.diagnose.result import Diagnosis, EffectFinding, Overlay, SideTable, WhereMap
+from tendonlab.report.diagnosis import Diagnosis, EffectFinding, Overlay, SideTable, WhereMap
 
 WHERE = {
     "signals": [{"signal": "joint_angle", "share": 0.8}, {"signal": "motor_angle", "share": 0.2}],

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tendonlab.diagnose.result import Diagnosis, EffectFinding, Overlay, plain
 from tendonlab.errors import ParameterError
+from tendonlab.report.diagnosis import Diagnosis, EffectFinding, Overlay, plain
 
 CONTRACT = [
     "format",

@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tendonlab.diagnose.result import Diagnosis, SideTable
 from tendonlab.report import effects_table
+from tendonlab.report.diagnosis import Diagnosis, SideTable
 from tendonlab.report.figures import LARGEST_SVG, embed
 
 NASTY = "<script>alert(\"rig\")</script> & $x$ 'quoted'"

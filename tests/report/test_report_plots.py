@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from tendonlab.diagnose.result import Diagnosis
 from tendonlab.errors import ParameterError
-from tendonlab.plot import gap_bars, overlay, ranked_effects, where_map
-from tendonlab.plot.runs import telling_window
+from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.figures import draw_all
+from tendonlab.report.plot import gap_bars, overlay, ranked_effects, where_map
+from tendonlab.report.plot.runs import telling_window
 
 matplotlib.use("Agg")
 
@@ -144,7 +144,7 @@ def test_svg_keeps_text_as_text(diagnosis: Diagnosis) -> None:
 
 
 def test_matplotlib_is_not_loaded_before_it_is_needed() -> None:
-    code = "import sys, tendonlab.plot, tendonlab.report, tendonlab.diagnose.result; print('matplotlib' in sys.modules)"
+    code = "import sys, tendonlab.report.plot, tendonlab.report.diagnosis; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from tendonlab.diagnose.result import Diagnosis
 from tendonlab.report import numbers, words
+from tendonlab.report.diagnosis import Diagnosis
 
 
 @pytest.mark.parametrize(

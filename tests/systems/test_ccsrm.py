@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from tendonlab.errors import ParameterError
-from tendonlab.system import System
+from tendonlab.simulation.system import System
 
 K, T_P, R, WRAP, MU = 5e4, 50.0, 0.012, 1.69, 0.15
 OWN = {"cable_stiffness": K, "pretension": T_P, "pulley_radius": R, "initial_wrap_angle": WRAP, "inertia": 1e-3}

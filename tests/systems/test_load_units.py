@@ -8,10 +8,10 @@ import pytest
 
 import tendonlab as tl
 from examples import with_effect
-from tendonlab.catalog import Parameter, SystemInfo, parameter_unit, unit
-from tendonlab.diagnose.where import dimension
-from tendonlab.priors import scales
-from tendonlab.replay import Replay, prepare
+from tendonlab.diagnosis.answer.where import dimension
+from tendonlab.fitting.priors import scales
+from tendonlab.simulation.catalog import Parameter, SystemInfo, parameter_unit, unit
+from tendonlab.simulation.prepare import Replay, prepare
 
 CARRIED = [
     (info, p) for kind in tl.kinds() for info in [tl.system_info(kind)] for p in info.parameters

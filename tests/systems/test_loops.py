@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from integrate.rig import FRICTION, INERTIAS, NOMINAL, controller, joint, pair, run
 from tendonlab import _core
-from tendonlab.signals import hold, linear, smooth
+from tendonlab.simulation.signals import hold, linear, smooth
 
 T = np.linspace(0.0, 2.0, 401)
 KP, KD = 30.0, 4.0

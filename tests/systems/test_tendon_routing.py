@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.cli.text import identification_text
+from tendonlab.mechanics.tendons import TendonTransmission
 from tendonlab.papers.s1 import example_device, first_joints, free_motion, gravity
-from tendonlab.routing import TendonTransmission
-from tendonlab.terminal import identification_text
 
 MOTION = free_motion(duration=4.0, sample_time=0.01)
 
@@ -65,7 +65,7 @@ def test_an_effect_of_the_cable_acts_on_every_branch_alike() -> None:
 
 def test_an_effect_of_the_gear_acts_where_there_is_one() -> None:
     """Reducers of 90 % that lose a tenth of the output more are reducers of 1/(1/0.9 + 0.1); joint 3 has none."""
-    from tendonlab.routing import Reducer
+    from tendonlab.mechanics.tendons import Reducer
 
     device, efficiency = example_device(), 1 / (1 / 0.9 + 0.1)
     worse = [None if r is None else Reducer(efficiency=efficiency, ratio=r.ratio) for r in device.reducers]

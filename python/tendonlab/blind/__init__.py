@@ -4,8 +4,8 @@ the scorer.
 The generator shares only the data format with the rest of tendonlab: no law, no stepper, no catalogue.
 """
 
-from .draw import draw
-from .run import run
-from .score import Score, score
+from .drawing import draw
+from .runner import run
+from .scoring import Score, score
 
 __all__ = ["Score", "draw", "run", "score"]

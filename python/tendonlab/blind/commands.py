@@ -9,9 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .draw import draw
-from .run import run
-from .score import score
+from .drawing import draw
+from .runner import run
+from .scoring import score
 
 
 def add_parser(subparsers: Any) -> None:

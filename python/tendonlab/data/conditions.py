@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tendonlab.catalog import SystemInfo
 from tendonlab.data.read import MissingColumnError, read_columns
 from tendonlab.data.schema import Table
 from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.simulation.catalog import SystemInfo
 
 OF_SHAPE = ("wrap_angle", "curvature_skew")  # conditions that a shape stands for
 

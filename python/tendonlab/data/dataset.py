@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from tendonlab.system import System
+    from tendonlab.simulation.system import System
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Dataset:
 
     def system(self) -> System:
         """The simulator that the dataset describes, with its nominal parameters."""
-        from tendonlab.system import System  # the system knows datasets; the other way round only here
+        from tendonlab.simulation.system import System  # the system knows datasets; the other way round only here
 
         return System.from_dataset(self)
 

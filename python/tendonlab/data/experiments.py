@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tendonlab.catalog import SystemInfo
 from tendonlab.data.conditions import read_conditions
 from tendonlab.data.dataset import Experiment, NominalParameter, SignalSpec
 from tendonlab.data.names import expected_one_of
@@ -19,6 +18,7 @@ from tendonlab.data.schema import Table
 from tendonlab.data.split import choose_test
 from tendonlab.data.units import convert, require_dimension
 from tendonlab.errors import DatasetError
+from tendonlab.simulation.catalog import SystemInfo
 
 if TYPE_CHECKING:
     import pandas as pd

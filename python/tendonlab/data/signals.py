@@ -1,11 +1,11 @@
 """The [signals] tables: role, unit and holding of each signal."""
 
-from tendonlab.catalog import Signal, SystemInfo, unit
 from tendonlab.data.dataset import Controller, SignalSpec
 from tendonlab.data.names import nearest
 from tendonlab.data.schema import Table
 from tendonlab.data.units import COMMAND_UNITS, base_unit, convert_difference, require_dimension, same_dimension
 from tendonlab.errors import DatasetError
+from tendonlab.simulation.catalog import Signal, SystemInfo, unit
 
 KEYS = ("column", "unit", "hold", "noise_sd", "resolution")
 

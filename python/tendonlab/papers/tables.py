@@ -6,8 +6,8 @@ from importlib.resources import files
 
 import pandas as pd
 
-from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
+from tendonlab.simulation.catalog import nearest
 
 
 def tables() -> tuple[str, ...]:

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
+from tendonlab.simulation.catalog import nearest
 
 JITTER = 0.01  # share of the sampling interval by which intervals may differ and still count as even
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures.check import along, choice, interval, times, within
-from tendonlab.signals import white_noise_sd
+from tendonlab.simulation.signals import white_noise_sd
 
 METHODS = ("central", "spline", "savgol")
 CUBIC = 3  # degree of the polynomials of the Savitzky-Golay filter

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline, splev, splprep
 
-from tendonlab.catalog import nearest
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.procedures.check import positive, reals, samples, whole, within
 from tendonlab.procedures.sheath_shape import Shape
 from tendonlab.seed import generator
+from tendonlab.simulation.catalog import nearest
 
 NUM_SAMPLES = 500  # of the paper
 RULES = ("left", "trapezoid", "turning")

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
 
-from tendonlab.plot import gap_bars, overlay, ranked_effects, where_map
-from tendonlab.plot.effects import height
-from tendonlab.plot.runs import telling_window
-from tendonlab.plot.style import COLOURS, FIGURE, INK, MUTED, RULE
-from tendonlab.plot.where import colour_bar, shared_scale
+from tendonlab.report.plot import gap_bars, overlay, ranked_effects, where_map
+from tendonlab.report.plot.effects import height
+from tendonlab.report.plot.runs import telling_window
+from tendonlab.report.plot.style import COLOURS, FIGURE, INK, MUTED, RULE
+from tendonlab.report.plot.where import colour_bar, shared_scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tendonlab.diagnose.result import Diagnosis
+    from tendonlab.report.diagnosis import Diagnosis
 
 _ALTS = {
     "gap": "Held-out error of each output over its noise floor",

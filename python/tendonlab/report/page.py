@@ -8,12 +8,12 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.report import numbers, words
-from tendonlab.report.verdict import sentence, version
+from tendonlab.report.sentence import sentence, version
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from tendonlab.diagnose.result import Diagnosis
+    from tendonlab.report.diagnosis import Diagnosis
     from tendonlab.report.figures import Picture
 
 _CLEAR = 0.05  # p-value up to which the summary says that the gap is concentrated in a regime
@@ -81,8 +81,8 @@ def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
 
 def _shown_part(diagnosis: Diagnosis) -> str:
     """What the overlay leaves out, for its caption; empty where it shows all."""
-    from tendonlab.plot.runs import telling_window
     from tendonlab.report.figures import MOST_DRAWN
+    from tendonlab.report.plot.runs import telling_window
 
     run = diagnosis.overlay
     if run is None or not run.measured:

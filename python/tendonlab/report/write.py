@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tendonlab.diagnose.result import Diagnosis
+    from tendonlab.report.diagnosis import Diagnosis
 
 
 def write_report(diagnosis: Diagnosis, out: Path, *, figures: bool = True) -> Path:

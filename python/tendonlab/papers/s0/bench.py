@@ -9,9 +9,9 @@ from functools import cache
 
 import pandas as pd
 
-from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
+from tendonlab.simulation.catalog import nearest
 
 CENTRES = 0.150  # m, capstan axis to pulley axis (S0 section 3.1)
 CABLE_DIAMETER = 1.59e-3  # m, 7x7 steel (S0 section 2.1)

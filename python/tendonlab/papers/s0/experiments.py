@@ -14,7 +14,7 @@ from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, configuration, loaded
 from tendonlab.papers.s0.maps import twin_map
 from tendonlab.papers.s0.models import Lugre, Proposed, printed_lugre
 from tendonlab.seed import generator
-from tendonlab.system import System
+from tendonlab.simulation.system import System
 
 LUGRE, PROPOSED = ("contact:static_lugre", "contact:viscous"), ("contact:load_and_ratio",)
 PASSES = 4  # maps of each configuration; the runs of a point are dealt out among them

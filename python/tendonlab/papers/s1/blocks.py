@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tendonlab.errors import ParameterError
-from tendonlab.routing import BranchLosses, Model, TendonTransmission
+from tendonlab.mechanics.tendons import BranchLosses, Model, TendonTransmission
 
 Shape = str  # "input", "gain", "sum", "block", "output"
 

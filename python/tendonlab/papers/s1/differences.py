@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from tendonlab.mechanics.tendons import back_driven_efficiency
 from tendonlab.papers.s1.bearing import RPM, BallBearing
 from tendonlab.papers.s1.device import example_device
 from tendonlab.papers.s1.experiments import compensated, effect_sizes, strategies
 from tendonlab.papers.s1.identification import Form, residual_error
 from tendonlab.papers.tables import table
-from tendonlab.routing import back_driven_efficiency
 
 EXAMPLE_BEARING = BallBearing(f0=2.0, viscosity=220.0, mean_diameter=33.5)  # [reconstructed]
 EXAMPLE_TORQUE = np.array([4.0, -3.0, 1.5, 2.0])  # N·m [reconstructed]

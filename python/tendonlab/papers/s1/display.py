@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
+from tendonlab.mechanics.tendons import TendonTransmission
 from tendonlab.papers.s1.arm import Arm
 from tendonlab.papers.s1.free_motion import FeedForward
-from tendonlab.routing import TendonTransmission
 
 
 @dataclass(frozen=True, kw_only=True)

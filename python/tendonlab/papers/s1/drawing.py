@@ -11,8 +11,8 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Polygon
 
+from tendonlab.mechanics.tendons import TendonTransmission
 from tendonlab.papers.s1.blocks import Block, BlockDiagram
-from tendonlab.routing import TendonTransmission
 
 INK, WIRE, LIGHT = "0.15", "0.35", "0.9"
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown")

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.mechanics.tendons import BranchLosses, Model, TendonTransmission
 from tendonlab.procedures import steady_averages
 from tendonlab.procedures.check import samples, within
-from tendonlab.routing import BranchLosses, Model, TendonTransmission
 
 Strategy = Literal["S1", "S2"]
 Form = Literal["exact", "first_order", "printed"]

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.tables import table
 from tendonlab.procedures.check import choice
+from tendonlab.simulation.catalog import nearest
 
 GRAVITY = 9.80665  # m/s^2
 PRELOAD = 200.0  # N, of the cables in all runs; reconstructed: printed for the cable test only

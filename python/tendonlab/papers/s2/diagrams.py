@@ -8,7 +8,7 @@ import numpy as np
 
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.constants import Constants
-from tendonlab.plot.style import COLOURS, INK, MUTED, RULE
+from tendonlab.report.plot.style import COLOURS, INK, MUTED, RULE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

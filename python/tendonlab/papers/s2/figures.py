@@ -12,7 +12,7 @@ from tendonlab import _core
 from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.estimate import Estimate
 from tendonlab.papers.s2.identify import bushing_law
-from tendonlab.plot.style import COLOURS, INK, MUTED, tidy
+from tendonlab.report.plot.style import COLOURS, INK, MUTED, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

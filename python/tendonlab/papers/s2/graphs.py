@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab.bondgraph import GY, MTF, TF, BondGraph, C, Element, I, One, R, Se, Sf, Zero
+from tendonlab.mechanics.bondgraph import GY, MTF, TF, BondGraph, C, Element, I, One, R, Se, Sf, Zero
 from tendonlab.papers.s2.constants import Constants
 
 Parts = tuple[list[Element], list[tuple[str, ...]]]

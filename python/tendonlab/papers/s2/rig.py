@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tendonlab.catalog import system_info
 from tendonlab.data import Dataset, load
 from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.reference import Reference, reference
 from tendonlab.papers.s2.twin import Sense, measured, simulate
-from tendonlab.system import System
+from tendonlab.simulation.catalog import system_info
+from tendonlab.simulation.system import System
 
 AROUND_JUMPS = 0.1  # s
 EVERY = 20  # steps of 1 ms a sample of a twin's log

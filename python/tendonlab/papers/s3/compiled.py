@@ -12,8 +12,8 @@ from tendonlab import _core
 from tendonlab.data import Experiment
 from tendonlab.papers.s3.groups import Record
 from tendonlab.papers.s3.rig import DEGREE, FrictionParameters, Rig, assumed_rig, paper_parameters
-from tendonlab.replay import Replay, prepare
-from tendonlab.system import System
+from tendonlab.simulation.prepare import Replay, prepare
+from tendonlab.simulation.system import System
 
 NAMES = tuple(f.name for f in fields(FrictionParameters) if f.name != "velocity_unit")
 SYSTEM_NAMES = dict(zip(NAMES, paper_parameters().system_parameters(), strict=True))

@@ -11,13 +11,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
-from tendonlab.catalog import nearest
 from tendonlab.data import Dataset
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.fit import fit_gradient
 from tendonlab.papers.s3.groups import Record, run_chain, to_dataset
 from tendonlab.papers.s3.rig import FrictionParameters
 from tendonlab.papers.s3.trajectories import Trajectory
+from tendonlab.simulation.catalog import nearest
 
 SAMPLE_RATE = 100.0  # Hz: what happens takes tenths of a second
 DURATION = 12.0  # s a run

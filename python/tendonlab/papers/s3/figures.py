@@ -12,7 +12,7 @@ from tendonlab.papers.s3.model import Prediction
 from tendonlab.papers.s3.rig import FrictionParameters, free_body
 from tendonlab.papers.s3.shapes import BumpShape
 from tendonlab.papers.s3.statics import TransmissionCoefficients
-from tendonlab.plot.style import INK, MUTED, tidy
+from tendonlab.report.plot.style import INK, MUTED, tidy
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.shapes import BumpShape
 from tendonlab.procedures.check import within
 from tendonlab.procedures.sheath_shape import Shape
+from tendonlab.simulation.catalog import nearest
 
 PROFILES = ("decaying", "uniform")
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tendonlab.data import Dataset
-from tendonlab.identification import Identification
-from tendonlab.identify import identify
+from tendonlab.identification.identify import identify
+from tendonlab.identification.result import Identification
 
 DYNAMIC = (
     "bristle_stiffness",

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from tendonlab.catalog import system_info
 from tendonlab.papers.s4.constants import Contact, Joint, Mechanism, contact, design
 from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.twin import CONTACTS, TENSIONS
-from tendonlab.system import System
+from tendonlab.simulation.catalog import system_info
+from tendonlab.simulation.system import System
 
 
 def simulator(

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from tendonlab.catalog import nearest
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s4.constants import RESOLUTION, Joint, Mechanism, contact, design, identified, joint
 from tendonlab.papers.s4.drive import Drive, printed_drive
 from tendonlab.papers.s4.twin import TENSIONS, CcsrmModel
+from tendonlab.simulation.catalog import nearest
 
 NOISE = 0.2  # N, sd of a tension sensor [assumed]
 SAMPLE_RATE, DURATION, WINDOW = 1000.0, 12.0, 4.0  # Hz, s, s: what comes before the window is start-up

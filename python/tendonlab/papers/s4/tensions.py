@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from tendonlab.catalog import nearest
 from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import ParameterError
-from tendonlab.identification import Identification
-from tendonlab.identify import identify
+from tendonlab.identification.identify import identify
+from tendonlab.identification.result import Identification
 from tendonlab.papers.s4.rig import NOISE
 from tendonlab.papers.s4.twin import TENSIONS
 from tendonlab.procedures.check import positive
-from tendonlab.system import System
+from tendonlab.simulation.catalog import nearest
+from tendonlab.simulation.system import System
 
 ANGLES = {"theta2": "driver_angle", "theta1": "joint_angle"}
 

@@ -1,0 +1,163 @@
+"""Open the truth and compare: what share of the blind cases the diagnosis got right, by kind and by strength."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from .runner import REPORT, VERDICTS, sha256
+
+BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
+HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Score:
+    """`cases`: one row a case, indexed by its id. `summary`: shares over all. `verdicts`: truth by verdict, counts.
+
+    `strengths`: shares by gap/noise. `effects`: shares by true effect.
+    """
+
+    cases: pd.DataFrame
+    summary: dict[str, float]
+    verdicts: pd.DataFrame
+    strengths: pd.DataFrame
+    effects: pd.DataFrame
+
+    def __str__(self) -> str:
+        lines = [f"{name:<28s} {value:.3g}" for name, value in self.summary.items()]
+        tables = [
+            ("verdict (truth in rows)", self.verdicts),
+            ("by gap/noise", self.strengths),
+            ("by effect", self.effects),
+        ]
+        blocks = [f"{title}\n{table.to_string(float_format='%.2f')}" for title, table in tables]
+        return "\n\n".join(["\n".join(lines), *blocks])
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain types: summary and rows."""
+        rows = json.loads(self.cases.reset_index().to_json(orient="records"))
+        return {"format": "tendonlab-score/1", "summary": self.summary, "cases": rows}
+
+
+def score(sealed: Path | str, reports: Path | str) -> Score:
+    """Score the reports of `run` against the truth files of `draw`.
+
+    Top-1: the most probable effect is the true one (or an accepted one) and was selected under the verdict "effect"
+    or "unknown_effect"; `ranked_first` asks for the rank alone. Raises ValueError where a report was changed after
+    it was hashed, or a truth is missing.
+    """
+    sealed, reports = Path(sealed), Path(reports)
+    if not (reports / VERDICTS).exists():
+        raise ValueError(f"{reports / VERDICTS} is missing: expected the folder that `blind run` wrote")
+    told = json.loads((reports / VERDICTS).read_text(encoding="utf-8"))["reports"]
+    rows = []
+    for name, verdict in sorted(told.items()):
+        truth = _truth(sealed, name)
+        rows.append({"case": name, **_facts(truth), **_compare(truth, _report(reports, name, verdict))})
+    if not rows:
+        raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
+    return _tables(pd.DataFrame(rows).set_index("case"))
+
+
+def _truth(sealed: Path, name: str) -> dict[str, Any]:
+    path = sealed / f"{name}.toml"
+    if not path.exists():
+        raise ValueError(f"{path} is missing: expected the truth of {name}")
+    truth = tomllib.loads(path.read_text(encoding="utf-8"))
+    if truth.get("format") != "tendonlab-sealed/1":
+        raise ValueError(f"{path}: format = {truth.get('format')!r}: expected 'tendonlab-sealed/1'")
+    return truth
+
+
+def _report(reports: Path, name: str, verdict: Mapping[str, Any]) -> dict[str, Any]:
+    if verdict["verdict"] == "failed":
+        return {"verdict": "failed", "effects": [], "selected": []}
+    path = reports / name / REPORT
+    if not path.exists() or sha256(path) != verdict["sha256"]:
+        raise ValueError(f"{path} is not the report that was hashed in {VERDICTS}: expected sha256 {verdict['sha256']}")
+    report: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return report
+
+
+def _facts(truth: Mapping[str, Any]) -> dict[str, object]:
+    draw = truth.get("draw", {})
+    names = ("gap_noise", "excitation", "controller", "form", "is_documented_form")
+    return {"effect": ",".join(truth["effects"]), "truth": truth["verdict"]} | {name: draw.get(name) for name in names}
+
+
+def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+    ranked = sorted(report.get("effects", []), key=lambda entry: -float(entry["probability"]))
+    names = [f"{entry['element']}:{entry['effect']}" for entry in ranked]
+    selected = list(report.get("selected", []))
+    found: dict[str, object] = {
+        "verdict": report["verdict"],
+        "first": names[0] if names else "",
+        "probability": float(ranked[0]["probability"]) if ranked else np.nan,
+        "selected": ",".join(selected),
+        "verdict_hit": report["verdict"] == truth["verdict"],
+        "shrinkage": _shrinkage(report),
+        "seconds": float(report.get("seconds", np.nan)),
+    }
+    right = {*truth["effects"], *truth.get("accept", [])}
+    if not truth["effects"]:
+        return found | {"false_alarm": bool(selected) or report["verdict"] in ("effect", "unknown_effect")}
+    first = names[0] if names else ""
+    names_it = report["verdict"] in ("effect", "unknown_effect") and first in selected
+    return found | {
+        "top1": first in right and names_it,
+        "ranked_first": first in right,
+        "top3": bool(right & set(names[:3])),
+        "class_hit": _part(first, 2) in {_part(name, 2) for name in right},
+        "element_hit": _part(first, 0) in {_part(name, 0) for name in right},
+    }
+
+
+def _part(name: str, index: int) -> str:
+    return name.partition(":")[index]
+
+
+def _shrinkage(report: Mapping[str, Any]) -> float:
+    value = ((report.get("shrinkage") or {}).get("from_refitted") or {}).get("value")
+    return float(value) if value is not None else float("nan")
+
+
+def _tables(cases: pd.DataFrame) -> Score:
+    for name in (*HITS, "false_alarm"):
+        if name not in cases:
+            cases[name] = np.nan
+        cases[name] = cases[name].astype(float)
+    single = cases[cases["effect"] != ""]
+    summary = {"cases": float(len(cases)), "single effects": float(len(single))}
+    summary |= {name.replace("_", " "): _mean(single[name]) for name in HITS if name != "verdict_hit"}
+    summary["verdict right"] = _mean(cases["verdict_hit"])
+    for truth in ("no_gap", "parameters_only"):
+        summary[f"false alarms on {truth}"] = _mean(cases.loc[cases["truth"] == truth, "false_alarm"])
+    summary["median shrinkage"] = float(single["shrinkage"].median()) if len(single) else float("nan")
+    summary["seconds per case"] = _mean(cases["seconds"])
+    cells = pd.cut(single["gap_noise"].astype(float), list(BINS), right=False).astype(str)
+    return Score(
+        cases=cases,
+        summary=summary,
+        verdicts=pd.crosstab(cases["truth"], cases["verdict"]),
+        strengths=_shares(single, cells),
+        effects=_shares(single, single["effect"]),
+    )
+
+
+def _mean(values: pd.Series) -> float:
+    return float(values.mean()) if values.notna().any() else float("nan")
+
+
+def _shares(single: pd.DataFrame, by: pd.Series) -> pd.DataFrame:
+    groups = single.groupby(by)
+    table = groups[[*HITS, "shrinkage"]].mean()
+    table.insert(0, "cases", groups.size())
+    return table

@@ -1,0 +1,276 @@
+"""The command line: every command is a public function with a printed result."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tendonlab.errors import DatasetError, NumericalError, ParameterError
+
+if TYPE_CHECKING:
+    from tendonlab.data import Dataset, Experiment
+    from tendonlab.report.diagnosis import Diagnosis
+    from tendonlab.simulation.catalog import SystemInfo
+    from tendonlab.simulation.system import System
+
+Arguments = argparse.Namespace
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; 0 whatever it found, 2 for what cannot be done as asked, 130 after Ctrl-C."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without "·" shows "?", and the answer stays
+    given = _parser().parse_args(argv)
+    # The blind protocol shares nothing with the library, its errors included: there a ValueError is meant for the user.
+    stated = (ParameterError, DatasetError, NumericalError, *([ValueError] if given.command == "blind" else []))
+    try:
+        code = int(given.run(given))
+        sys.stdout.flush()
+        return code
+    except stated as error:
+        return _complain(f"{type(error).__name__}: {error}")
+    except BrokenPipeError:  # the reader of the pipe has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        return _complain(str(error))
+    except KeyboardInterrupt:
+        return _complain("interrupted", code=130)
+
+
+def _complain(text: str, *, code: int = 2) -> int:
+    print(f"tendonlab: {' '.join(text.split())}", file=sys.stderr)
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    from tendonlab import __version__
+    from tendonlab.blind.commands import add_parser as add_blind
+
+    parser = argparse.ArgumentParser(
+        prog="tendonlab",
+        description="Why does the simulator of a cable- or tendon-driven mechanism miss the rig?",
+        epilog="Start with `tendonlab demo`; `tendonlab COMMAND --help` tells more.",
+    )
+    parser.add_argument("--version", action="version", version=f"tendonlab {__version__}")
+    commands = _commands(parser, dest="command", metavar="COMMAND")
+    for add in (_add_demo, _add_diagnose, _add_identify, _add_simulate, _add_effects, _add_systems, _add_datasets):
+        add(commands)
+    add_blind(commands)
+    return parser
+
+
+def _commands(parser: argparse.ArgumentParser, *, dest: str, metavar: str) -> Any:
+    """What stands for one of several commands; without any of them, the help of all."""
+
+    def explain(_: Arguments) -> int:
+        parser.print_help()
+        return 0
+
+    parser.set_defaults(run=explain)
+    return parser.add_subparsers(dest=dest, metavar=metavar)
+
+
+def _command(commands: Any, name: str, run: Callable[[Arguments], int], text: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(name, help=text, description=text)
+    parser.set_defaults(run=run)
+    return parser
+
+
+def _add_demo(commands: Any) -> None:
+    parser = _command(commands, "demo", _demo, "diagnose the bundled rig and write its report")
+    parser.add_argument("--out", type=Path, default=Path("tendonlab-demo"), metavar="DIR", help="default: %(default)s")
+    _add_progress(parser)
+
+
+def _add_diagnose(commands: Any) -> None:
+    parser = _command(commands, "diagnose", _diagnose, "find out why the simulator misses the rig")
+    parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write report.html, report.json and figures here")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="default: 0; same seed, same answer")
+    parser.add_argument("--no-figures", action="store_true", help="write no PNG and SVG beside the report")
+    _add_progress(parser)
+
+
+def _add_identify(commands: Any) -> None:
+    parser = _command(commands, "identify", _identify, "fit the free parameters to the training experiments")
+    parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
+    _add_effect_names(parser)
+    parser.add_argument("--starts", type=int, default=1, metavar="N", help="default: 1 starting point")
+    parser.add_argument("--out", type=Path, metavar="FILE.json", help="write the result here")
+    _add_progress(parser)
+
+
+def _add_simulate(commands: Any) -> None:
+    parser = _command(commands, "simulate", _simulate, "simulate one experiment and compare it with what was measured")
+    parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
+    parser.add_argument("--experiment", metavar="NAME", help="default: the first held-out one")
+    _add_effect_names(parser)
+    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameter values, SI")
+    parser.add_argument("--out", type=Path, metavar="FILE.csv", help="write t and every simulated output here")
+
+
+def _add_effects(commands: Any) -> None:
+    parser = _command(commands, "effects", _effects, "list the effects a system takes, with equations and parameters")
+    parser.add_argument("--system", metavar="KIND", help="default: all systems")
+    _add_axis(parser)
+
+
+def _add_systems(commands: Any) -> None:
+    _add_axis(_command(commands, "systems", _systems, "list the systems, with equations, signals and parameters"))
+
+
+def _add_datasets(commands: Any) -> None:
+    text = "list or fetch public recordings of real rigs"
+    verbs = _commands(commands.add_parser("datasets", help=text, description=text), dest="verb", metavar="list|prepare")
+    _command(verbs, "list", _list_datasets, "list the recordings that can be prepared")
+    prepare = _command(verbs, "prepare", _prepare, "fetch a recording, check it and write its dataset folder")
+    prepare.add_argument("name", metavar="NAME")
+    prepare.add_argument("--source", type=Path, metavar="DIR", help="folder that holds its files already")
+    prepare.add_argument("--out", type=Path, metavar="DIR", help="default: ./NAME")
+
+
+def _add_effect_names(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--effects", nargs="+", default=[], metavar="EFFECT", help="add these, such as joint:stribeck")
+
+
+def _add_axis(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--axis", choices=("rotary", "linear"), default="rotary", help="units; default: %(default)s")
+
+
+def _add_progress(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--quiet", action="store_true", help="show no progress (none is shown in a pipe)")
+
+
+def _progress(given: Arguments) -> bool:
+    return not given.quiet and sys.stderr.isatty()
+
+
+def _demo(given: Arguments) -> int:
+    from tendonlab.cli.demo import demo
+
+    print("The bundled rig: a motor turns a pendulum through an elastic cable; its simulator lacks one effect.\n")
+    _print_diagnosis(demo(given.out, progress=_progress(given)), given.out)
+    print("Yours: tendonlab diagnose FOLDER --out DIR (the README shows the dataset.toml it needs)")
+    return 0
+
+
+def _diagnose(given: Arguments) -> int:
+    from tendonlab.data import load
+    from tendonlab.diagnosis.diagnose import diagnose
+
+    found = diagnose(load(given.dataset), seed=given.seed, progress=_progress(given))
+    if given.out is not None:
+        found.report(given.out, figures=not given.no_figures)
+    _print_diagnosis(found, given.out)
+    return 0
+
+
+def _print_diagnosis(found: Diagnosis, out: Path | None) -> None:
+    from tendonlab.cli.text import diagnosis_text
+
+    print(diagnosis_text(found))
+    told = "none written; --out DIR writes one" if out is None else out / "report.html"
+    print(f"\n{found.seconds:.0f} s, seed {found.seed}. Report: {told}")
+
+
+def _identify(given: Arguments) -> int:
+    from tendonlab.cli.text import identification_text
+    from tendonlab.data import load
+    from tendonlab.identification.identify import identify
+
+    rig = load(given.dataset)
+    fit = identify(rig, effects=given.effects, num_starts=given.starts, progress=_progress(given))
+    print(identification_text(fit))
+    if given.out is not None:
+        given.out.write_text(json.dumps(fit.to_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        print(f"\nWritten: {given.out}")
+    return 0
+
+
+def _simulate(given: Arguments) -> int:
+    from tendonlab.cli.text import errors_text
+    from tendonlab.data import load
+    from tendonlab.simulation.sweep import refuse_conditions
+
+    rig = load(given.dataset)
+    experiment = _experiment(rig, given.experiment)
+    changes = _settings(given.set)
+    refuse_conditions(experiment, changes)
+    run = _changed(rig.system(), given.effects, changes).simulate(experiment)
+    size = f"{len(experiment.data)} samples, {experiment.duration:g} s"
+    print(f"{rig.name}, {experiment.name} ({experiment.split}): {size}\n")
+    print(errors_text(run, experiment))
+    if given.out is not None:
+        run.outputs.to_csv(given.out, index_label="t", float_format="%.9g")
+        print(f"\nWritten: {given.out}")
+    return 0
+
+
+def _experiment(rig: Dataset, name: str | None) -> Experiment:
+    return rig[name] if name is not None else [*rig.test, *rig.train][0]
+
+
+def _settings(texts: Sequence[str]) -> dict[str, float]:
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            equals = ""
+        if not (name and equals):
+            raise ParameterError(f"--set {text}: expected NAME=VALUE with a number, such as joint_coulomb=0.05")
+    return found
+
+
+def _changed(system: System, effects: Sequence[str], values: dict[str, float]) -> System:
+    """`system` with effects and values; those of an added effect go in with it, for it may have no default."""
+    own = {name: {p: values[p] for p in system.info.effect(name).parameters if p in values} for name in effects}
+    used = {name for given in own.values() for name in given}
+    changed = system.with_effects(own) if own else system
+    return changed.with_parameters({name: value for name, value in values.items() if name not in used})
+
+
+def _effects(given: Arguments) -> int:
+    from tendonlab.cli.text import effects_text
+    from tendonlab.simulation.catalog import kinds, system_info
+
+    infos: list[SystemInfo] = [system_info(kind) for kind in ([given.system] if given.system else kinds())]
+    print("\n\n".join(effects_text(info, axis=given.axis) for info in infos))
+    return 0
+
+
+def _systems(given: Arguments) -> int:
+    from tendonlab.cli.text import system_text
+    from tendonlab.simulation.catalog import kinds, system_info
+
+    print("\n\n".join(system_text(system_info(kind), axis=given.axis) for kind in kinds()))
+    return 0
+
+
+def _list_datasets(given: Arguments) -> int:
+    from tendonlab.cli.text import wrapped
+    from tendonlab.data.datasets import list_datasets
+
+    for name, of in list_datasets().items():
+        megabytes = sum(file.size for file in of.files) / 1e6
+        print(f"{name}  ({len(of.files)} files, {megabytes:.1f} MB)")
+        for line in (of.summary, f"Licence: {of.licence}", f"Cite: {of.citation}"):
+            print(wrapped(line, indent="    "))
+    return 0
+
+
+def _prepare(given: Arguments) -> int:
+    from tendonlab.data.datasets import prepare
+
+    folder = prepare(given.name, source=given.source, out=given.out, progress=sys.stderr.isatty())
+    print(f"Ready: {folder}. Next: tendonlab diagnose {folder} --out {folder}-report")
+    return 0

@@ -1,0 +1,235 @@
+"""Results as plain text, for a terminal or a pipe."""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from tendonlab.diagnosis.confusions import confusions
+from tendonlab.report.numbers import number, prefixed, probability, span, unit_text
+from tendonlab.report.words import REPLAYS, capital, gain_words, listing, parameter_words, phrase, separation
+from tendonlab.simulation.catalog import parameter_unit, unit
+
+if TYPE_CHECKING:
+    from tendonlab.data import Experiment
+    from tendonlab.identification.result import Identification
+    from tendonlab.report.diagnosis import Diagnosis, EffectFinding
+    from tendonlab.simulation.catalog import Effect, SystemInfo
+    from tendonlab.simulation.trajectory import Trajectory
+
+WIDEST = 110  # columns: longer lines are hard to read, however wide the terminal
+_BAR = 20  # columns of a probability of 1
+_LEAST = 0.01  # probability below which a candidate is not worth a line
+_SHOWN = 6
+_CLOSE = 0.95  # correlation of two fitted parameters beyond which the data hardly tell them apart
+
+
+def width() -> int:
+    """Columns to fill: the terminal's, or 100 in a pipe."""
+    return max(40, min(WIDEST, shutil.get_terminal_size((100, 24)).columns))
+
+
+def wrapped(text: str, *, indent: str = "", hanging: str | None = None) -> str:
+    """`text` filled to the width; `indent` before the first line, `hanging` (or `indent`) before the others."""
+    after = indent if hanging is None else hanging
+    return textwrap.fill(
+        text,
+        width(),
+        initial_indent=indent,
+        subsequent_indent=after,
+        break_long_words=False,
+        break_on_hyphens=False,  # names such as run-01 stay whole
+    )
+
+
+def table(rows: Sequence[Sequence[str]], *, right: Iterable[int] = (), indent: str = "  ") -> str:
+    """Columns two blanks apart; those in `right` end flush. The first row is the header."""
+    flush = set(right)
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = []
+    for row in rows:
+        cells = [c.rjust(w) if i in flush else c.ljust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))]
+        lines.append((indent + "  ".join(cells)).rstrip())
+    return "\n".join(lines)
+
+
+def diagnosis_text(diagnosis: Diagnosis) -> str:
+    """The diagnosis on one screen: verdict, gap, likely effects, what stays open, what to measure next."""
+    parts = [
+        wrapped(diagnosis.sentence),
+        _gap(diagnosis),
+        _effects(diagnosis),
+        _open_questions(diagnosis),
+        _items("Next experiments", [_experiment(item) for item in diagnosis.next_experiments], numbered=True),
+        _items("Notes", diagnosis.warnings),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _gap(diagnosis: Diagnosis) -> str:
+    stages = ["noise_floor", "nominal", "refitted", *(["with_effect"] if diagnosis.selected else [])]
+    rows = [["signal", "unit", *(stage.replace("_", " ") for stage in stages)]]
+    for signal, values in diagnosis.gap.items():
+        shown = [values[stage] for stage in stages]
+        factor, unit = prefixed(shown, diagnosis.units.get(signal, ""))
+        rows.append([signal, unit, *(number(None if v is None else factor * v) for v in shown)])
+    how = REPLAYS.get(str(diagnosis.replay["kind"]), str(diagnosis.replay["kind"]))
+    return f"{wrapped(f'Error on held-out experiments, RMS ({how})')}\n{table(rows, right=range(2, len(rows[0])))}"
+
+
+def _effects(diagnosis: Diagnosis) -> str:
+    likely = [e for e in diagnosis.effects if e.probability >= _LEAST or e.name in diagnosis.selected]
+    shown = [e for place, e in enumerate(likely) if place < _SHOWN or e.name in diagnosis.selected]
+    if not shown:
+        return ""
+    longest = max(len(effect.name) for effect in shown)
+    lines = []
+    for effect in shown:
+        bar = "█" * max(1, round(_BAR * effect.probability))
+        chosen = "  added" if effect.name in diagnosis.selected else ""
+        lines.append(f"  {effect.name.ljust(longest)}  {probability(effect.probability):>6}  {bar.ljust(_BAR)}{chosen}")
+        lines[-1] = lines[-1].rstrip()
+        if chosen:
+            lines += [f"    {parameter}" for parameter in _parameters(effect)]
+    return "\n".join(["Probability that an effect is part of the cause", *lines])
+
+
+def _parameters(effect: EffectFinding) -> list[str]:
+    found = []
+    for name, of in effect.parameters.items():
+        bounds = of.get("ci95")
+        shown = [of["value"], *(bounds or [])]
+        factor, unit = prefixed(shown, str(of.get("unit", "")))
+        between = span([factor * b for b in bounds]) if bounds and None not in bounds else ""
+        interval = f" (95 %: {between})" if between else ""
+        value = None if of["value"] is None else factor * of["value"]
+        found.append(f"{parameter_words(name, element=effect.element)} = {number(value)} {unit}".rstrip() + interval)
+    return found
+
+
+def _open_questions(diagnosis: Diagnosis) -> str:
+    tied = [listing(map(phrase, group), last="or") for group in diagnosis.indistinguishable]
+    parts = [_items("These data cannot tell apart", tied)]
+    if diagnosis.invisible:
+        text = listing(diagnosis.invisible)
+        parts.append("These data say nothing about\n" + wrapped(text, indent="  "))
+    return "\n\n".join(part for part in parts if part)
+
+
+def _experiment(item: Any) -> str:
+    names = item.get("separates") or []
+    aside = [separation(names) if names else "", gain_words(item.get("expected_gain"))]
+    told = "; ".join(part for part in aside if part)
+    return capital(str(item["description"])) + (f" ({told})" if told else "")
+
+
+def _items(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
+    if not items:
+        return ""
+    marks = [f"{place}." if numbered else "-" for place in range(1, len(items) + 1)]
+    lines = [
+        wrapped(item, indent=f"  {mark} ", hanging=" " * (3 + len(mark)))
+        for mark, item in zip(marks, items, strict=True)
+    ]
+    return "\n".join([title, *lines])
+
+
+def identification_text(fit: Identification) -> str:
+    """The fitted parameters, a line each, and what deserves a second look."""
+    rows = [["parameter", "nominal", "fitted", "95 %", "unit", ""]]
+    for name, row in fit.parameters.iterrows():
+        shown = [float(row[key]) for key in ("nominal", "value", "ci95_lower", "ci95_upper")]
+        factor, unit = prefixed(shown, str(row["unit"]))
+        nominal, value, lower, upper = (factor * each for each in shown)
+        doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "not informed by these data: held"
+        rows.append([str(name), number(nominal), number(value), span([lower, upper]), unit, doubt])
+    state = "Converged" if fit.converged else f"NOT converged: {fit.message}"
+    told = f"{state} after {fit.num_iterations} iterations, {len(fit.residuals)} experiments fitted together."
+    tied = _items("Hard to tell apart", _correlated(fit))
+    parts = [wrapped(told), table(rows, right=(1, 2)), _fit_errors(fit), tied, _items("Notes", fit.warnings)]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _fit_errors(fit: Identification) -> str:
+    """What the fit leaves of each output, beside how much it moves; and what to do where it leaves all of it."""
+    rows = [["signal", "unit", "RMS error", "RMS about its mean"]]
+    for signal, row in fit.errors.iterrows():
+        factor, unit = prefixed([row["rms_error"], row["spread"]], str(row["unit"]))
+        rows.append([str(signal), unit, number(factor * row["rms_error"]), number(factor * row["spread"])])
+    advice = "is predicted hardly better than by a constant; other nominal values or more starts may find a better fit"
+    doubt = "\n".join(wrapped(f"{name} {advice}", indent="  ") for name in fit.missed)
+    return "\n".join(part for part in ("Error of the fit", table(rows, right=(2, 3)), doubt) if part)
+
+
+def _correlated(fit: Identification) -> list[str]:
+    names, r = list(fit.correlations.columns), fit.correlations.to_numpy(dtype=float)
+    pairs = [(i, j) for i in range(len(names)) for j in range(i + 1, len(names)) if abs(r[i, j]) > _CLOSE]
+    close = sorted(pairs, key=lambda pair: -abs(float(r[pair])))
+    return [f"{names[i]} and {names[j]}: correlation {r[i, j]:.3f}".replace("-", "−") for i, j in close]
+
+
+def errors_text(run: Trajectory, experiment: Experiment) -> str:
+    """How far a simulated experiment is from what was measured, a line an output."""
+    rows = [["signal", "unit", "RMS error", "RMS measured", "largest error"]]
+    for signal in run.outputs.columns:
+        if signal not in experiment.data.columns:
+            continue
+        measured = experiment.data[signal]
+        error = run.outputs[signal] - measured
+        shown = [float((error**2).mean() ** 0.5), float((measured**2).mean() ** 0.5), float(error.abs().max())]
+        factor, unit = prefixed(shown, run.units[signal])
+        rows.append([str(signal), unit, *(number(factor * value) for value in shown)])
+    return table(rows, right=range(2, 5))
+
+
+def system_text(info: SystemInfo, *, axis: str) -> str:
+    """A system: equation, signals and parameters with their units, and what its simulator contains."""
+    lines = [f"{info.kind}: units of a {axis} axis"]
+    lines += [wrapped(part.strip(), indent="  ", hanging=" " * 6) for part in info.equation.split(";")]
+    for title, signals in (("inputs", info.inputs), ("outputs", info.outputs)):
+        rows = [(s.name, unit(s.dimension, axis), s.meaning + ("" if s.required else ", optional")) for s in signals]
+        lines += [f"  {title}", *(_named(*row) for row in rows)]
+    own = [info.parameter(name) for name in _nominal_parameters(info)]
+    lines += ["  parameters", *(_named(row.name, parameter_unit(info, row, axis), row.meaning) for row in own)]
+    nominal = listing(info.default_nominal_effects) or "no effect"
+    contains = f"contains {nominal}, unless the dataset says otherwise"
+    return "\n".join([*lines, wrapped(contains, indent="  ", hanging=" " * 6)])
+
+
+def _named(name: str, unit: str, meaning: str) -> str:
+    """A line of a list: "- joint_inertia (kg·m²): what it is"."""
+    shown = unit_text(unit)
+    return wrapped(f"{name} ({shown}): {meaning}" if shown else f"{name}: {meaning}", indent="    - ", hanging=" " * 6)
+
+
+def effects_text(info: SystemInfo, *, axis: str) -> str:
+    """The effects of a system: equation, source, parameters with units, and what is easily mistaken for what."""
+    heading = f"{info.kind}: effects as element:effect, units of a {axis} axis"
+    optional = [effect for effect in info.effects if not effect.structural]
+    return "\n\n".join([heading, *(_effect_entry(info, effect, axis) for effect in optional)])
+
+
+def _effect_entry(info: SystemInfo, effect: Effect, axis: str) -> str:
+    nominal = effect.name in info.default_nominal_effects
+    lines = [
+        f"  {effect.name}{'  (in the simulator unless the dataset says otherwise)' if nominal else ''}",
+        wrapped(f"{effect.equation}   [{effect.source}]", indent="    "),
+        wrapped(effect.summary, indent="    "),
+    ]
+    for name in effect.parameters:
+        row = info.parameter(name)
+        lines.append(_named(name, parameter_unit(info, row, axis), row.meaning))
+    for confusion in confusions(info, effect.name):
+        others = listing(confusion.effects, last="or")
+        lines.append(
+            wrapped(f"easily mistaken for {others}; what separates them: {confusion.separates}", indent="    ")
+        )
+    return "\n".join(lines)
+
+
+def _nominal_parameters(info: SystemInfo) -> list[str]:
+    own = {name for effect in info.default_nominal_effects for name in info.effect(effect).parameters}
+    structural = {name for effect in info.effects if effect.structural for name in effect.parameters}
+    return [p.name for p in info.parameters if p.effect is None or p.name in own | structural]

@@ -1,0 +1,119 @@
+"""`load`: a folder with dataset.toml and its files to a checked Dataset."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+from tendonlab.data.controller import check_controller, read_controller
+from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
+from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
+from tendonlab.data.missing_inputs import absent_inputs
+from tendonlab.data.names import nearest
+from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
+from tendonlab.data.schema import FILE, read_toml
+from tendonlab.data.signals import read_signals
+from tendonlab.errors import DatasetError
+from tendonlab.simulation import catalog
+
+
+def load(path: str | PathLike[str]) -> Dataset:
+    """Read and check the dataset in the folder `path` (or the dataset.toml in it); samples come in SI units.
+
+    Raises DatasetError at the first violation of the format; it names file, key or column, row where there is one, and
+    what was expected. Rows are the lines of a CSV file (the header is row 1), otherwise samples counted from 1."""
+    folder = Path(path)
+    folder = folder.parent if folder.name == FILE else folder
+    top = read_toml(folder)
+    name, description = top.text("name"), top.text("description", "")
+    info, axis = read_system(top)
+    nominal_effects = read_nominal_effects(top, info)
+    parameters = read_parameters(top, info, nominal_effects=nominal_effects)
+    controller = read_controller(top)
+    signals = read_signals(top, info, axis=axis, controller=controller)
+    check_controller(top, signals=signals, info=info)
+    column, unit = read_time(top)
+    context = Context(
+        folder=folder,
+        info=info,
+        nominal_effects=nominal_effects,
+        parameters=parameters,
+        signals=signals,
+        time_column=column,
+        time_unit=unit,
+        time_stated="time" in top.values,
+    )
+    experiments = read_experiments(top, context)
+    _require_motion(experiments, signals.values(), info=info, controller=controller)
+    command = signals.get("motor_torque")
+    command_is_effort = command is None or command.si_unit == catalog.unit("effort", axis)
+    warnings = [
+        *assumptions(top, parameters, experiments, command_is_effort=command_is_effort),
+        *_doubts(experiments, signals.values(), info=info),
+        *_split_notes(experiments, given=split_is_given(top)),
+    ]
+    dataset = Dataset(
+        name=name,
+        description=description,
+        kind=info.kind,
+        axis=axis,
+        nominal_effects=nominal_effects,
+        parameters=parameters,
+        controller=controller,
+        signals=signals,
+        experiments=experiments,
+        path=folder,
+        warnings=tuple(warnings),
+    )
+    return replace(dataset, warnings=(*warnings, *absent_inputs(dataset)))
+
+
+def _require_motion(
+    experiments: tuple[Experiment, ...],
+    signals: Iterable[SignalSpec],
+    *,
+    info: catalog.SystemInfo,
+    controller: Controller | None,
+) -> None:
+    """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing."""
+    required = [signal.name for signal in info.inputs if signal.required]
+    if controller is not None:  # the replay computes the motor's command, from a reference that moves or is disturbed
+        required = [name for name in required if name != "motor_torque"]
+        if controller.disturbance is None or _is_constant(experiments, controller.disturbance):
+            required.append(controller.reference)
+    for spec in signals:
+        if spec.name in required and _is_constant(experiments, spec.name):
+            value = experiments[0].data[spec.name].iloc[0]
+            problem = f"column {spec.column!r} is constant ({value:g} {spec.si_unit}) in every experiment"
+            raise DatasetError(
+                f"{FILE}, key signals.{spec.name}: {problem} and identifies nothing; expected it to vary"
+            )
+
+
+def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:
+    return all(bool((frame == frame.iloc[0]).all()) for frame in (experiment.data[name] for experiment in experiments))
+
+
+def _doubts(experiments: Iterable[Experiment], signals: Iterable[SignalSpec], *, info: catalog.SystemInfo) -> list[str]:
+    """A warning for every covariate whose name is nearly that of a signal or parameter of the system."""
+    known = [signal.name for signal in (*info.inputs, *info.outputs)]
+    parameters = [parameter.name for parameter in info.parameters]
+    covariates = {
+        f"signal {spec.name!r}": nearest(spec.name, known, likeness=0.8) for spec in signals if spec.role == "covariate"
+    }
+    conditions = {name for experiment in experiments for name in experiment.conditions if name not in parameters}
+    covariates |= {f"condition {name!r}": nearest(name, parameters, likeness=0.8) for name in sorted(conditions)}
+    return [
+        f"{what} is unknown to {info.kind} and kept as a covariate; {match!r} has nearly that name"
+        for what, match in covariates.items()
+        if match is not None
+    ]
+
+
+def _split_notes(experiments: tuple[Experiment, ...], *, given: bool) -> list[str]:
+    held_out = [experiment.name for experiment in experiments if experiment.split == "test"]
+    if not held_out:
+        return ["no experiment is held out: all of them are in the training set"]
+    if given:
+        return []
+    return [f"no split given: held out by the library: {', '.join(held_out)}"]

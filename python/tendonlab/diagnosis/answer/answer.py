@@ -1,0 +1,153 @@
+"""Puts the answers together: gaps and shrinkage on held-out experiments, findings, maps, warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from tendonlab.diagnosis import confusions
+from tendonlab.diagnosis.answer import heldout, notes, where
+from tendonlab.diagnosis.answer.findings import findings
+from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.inverse import inverse_dynamics
+from tendonlab.diagnosis.answer.next_experiments import advise
+from tendonlab.diagnosis.answer.verdict import decide
+from tendonlab.diagnosis.search.screen import INVISIBLE
+from tendonlab.diagnosis.search.select import Search
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.noise import Floor
+from tendonlab.report.diagnosis import Diagnosis, Overlay
+
+
+def compose(fitter: Fitter, nominal: Fitted, found: Search, *, seed: int, seconds: Callable[[], float]) -> Diagnosis:
+    """The Diagnosis of a finished search."""
+    case, floor = fitter.case, fitter.floor
+    judged = case.test or case.train
+    steps = [heldout.replay(case, heldout.models(case, model, judged), judged) for model in found.path]
+    untouched = heldout.replay(case, [case.system] * len(judged), judged)
+    stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
+    explained = _explained(stages, floor) if found.selected else None
+    level = nominal.mean_square if floor.repeated else _plain_level(untouched, floor)
+    left = _plain_level(stages["refitted"], floor)
+    verdict = decide(found, nominal=level, refitted=left, explained=explained, floor=floor)
+    records = where.PortRecords(case, stages["with_effect"], judged)
+    rng = np.random.default_rng(seed)
+    return Diagnosis(
+        dataset=case.dataset.name,
+        system=case.system.kind,
+        seed=seed,
+        verdict=verdict.verdict,
+        verdict_probability=verdict.probability,
+        replay=case.replay.to_dict(),
+        gap=_gap(case, stages, floor),
+        where={
+            "signals": where.signals(case, stages["refitted"], floor),
+            "elements": where.elements(verdict.effects, case),
+            "regimes": where.regimes(case, stages["refitted"], floor, records),
+        },
+        effects=findings(fitter, found, verdict.effects, stages["refitted"], judged, seed),
+        sets=tuple(verdict.sets),
+        selected=found.selected,
+        explained=explained,
+        indistinguishable=tuple(tuple(group) for group in verdict.indistinguishable),
+        invisible=_invisible(found),
+        shrinkage={
+            "from_nominal": heldout.shrinkage(case, stages["nominal"], stages["with_effect"], floor, judged, rng),
+            "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
+        },
+        next_experiments=tuple(_next(case, floor, found) + _measurements(verdict.indistinguishable)),
+        warnings=tuple(notes.warnings(case, floor, found)),
+        units=notes.units(case),
+        overlay=_overlay(case, stages, floor, judged),
+        where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),
+        held_out=_per_experiment(case, stages, floor, judged),
+        table=inverse_dynamics(case, [model.system for model in found.path], judged),
+        split={
+            "train": [case.experiments[i].name for i in case.train],
+            "test": [case.experiments[i].name for i in case.test],
+        },
+        details={**notes.details(case, floor, nominal, found), "steps": _steps(case, found, steps)},
+        seconds=seconds(),
+    )
+
+
+def _gap(case: Case, stages: dict[str, Replayed], floor: Floor) -> dict[str, dict[str, float]]:
+    errors = {stage: heldout.rms(of) for stage, of in stages.items()}
+    return {
+        case.outputs[c]: {"noise_floor": float(floor.rms[c]), **{stage: float(e[c]) for stage, e in errors.items()}}
+        for c in case.measured
+    }
+
+
+def _steps(case: Case, found: Search, replayed: Sequence[Replayed]) -> list[dict[str, Any]]:
+    """Held-out rms of every output after the refit and after each effect that was added."""
+    return [
+        {"effects": list(model.added), "rms": {case.outputs[c]: float(heldout.rms(of)[c]) for c in case.measured}}
+        for model, of in zip(found.path, replayed, strict=True)
+    ]
+
+
+def _plain_level(of: Replayed, floor: Floor) -> float:
+    error = heldout.rms(of)
+    there = np.isfinite(floor.rms)
+    return float(np.mean(np.square(error[there] / floor.rms[there])))
+
+
+def _explained(stages: dict[str, Replayed], floor: Floor) -> float | None:
+    """Share of the refitted simulator's held-out excess mean square that the effects remove."""
+    before = _plain_level(stages["refitted"], floor) - 1.0
+    after = _plain_level(stages["with_effect"], floor) - 1.0
+    return None if before <= 0 else float(np.clip(1.0 - max(0.0, after) / before, 0.0, 1.0))
+
+
+def _invisible(found: Search) -> tuple[str, ...]:
+    leads = found.rounds[0].leads if found.rounds else ()
+    return tuple(x.effect for x in leads if max(x.visibility, x.gain) < INVISIBLE and x.effect not in found.selected)
+
+
+def _next(case: Case, floor: Floor, found: Search) -> list[dict[str, Any]]:
+    """Between the first effect and what comes next to it in its place."""
+    if not found.rounds or (own := found.rounds[0].accepted) is None:
+        return []
+    others = [trial.fitted for trial in found.rounds[0].trials if trial is not own]
+    return advise(case, floor, own.fitted, others[0] if others else found.null)
+
+
+def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
+    """What is known to separate tied causes, whether or not the simulator can make it."""
+    return [
+        {"description": known.separates, "separates": list(known.effects), "expected_gain": None}
+        for group in ties
+        for known in confusions.among(group)
+    ]
+
+
+def _overlay(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> Overlay:
+    """The held-out experiment on which the refitted simulator is worst."""
+    scale = floor.rms[case.measured, None]
+    squares = [np.nanmean(np.square(r[case.measured] / scale)) for r in stages["refitted"].residuals]
+    k = int(np.argmax(squares))
+    ready = case.prepared[judged[k]]
+
+    def by_signal(rows: np.ndarray) -> dict[str, np.ndarray]:
+        return {case.outputs[c]: rows[c] for c in case.measured}
+
+    return Overlay(
+        name=ready.name,
+        time=np.asarray(case.experiments[judged[k]].time),
+        measured=by_signal(ready.measured),
+        nominal=by_signal(stages["nominal"].outputs[k]),
+        refitted=by_signal(stages["refitted"].outputs[k]),
+        with_effect=by_signal(stages["with_effect"].outputs[k]),
+        floor={case.outputs[c]: float(floor.rms[c]) for c in case.measured},
+    )
+
+
+def _per_experiment(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> pd.DataFrame:
+    squares = {stage: [heldout.row_mean_squares(r) for r in of.residuals] for stage, of in stages.items()}
+    rows = {stage: [heldout.gap(s, floor.rms) for s in values] for stage, values in squares.items()}
+    return pd.DataFrame(rows, index=pd.Index([case.experiments[i].name for i in judged], name="experiment"))

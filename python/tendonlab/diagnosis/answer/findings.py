@@ -1,0 +1,95 @@
+"""The candidates as the report lists them: probability, parameters with intervals, what they do to held-out data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from tendonlab.diagnosis.answer import heldout
+from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.search.contest import Trial
+from tendonlab.diagnosis.search.select import Search
+from tendonlab.errors import NumericalError
+from tendonlab.fitting.fitted import Fitter
+from tendonlab.report.diagnosis import EffectFinding
+
+
+def findings(
+    fitter: Fitter,
+    found: Search,
+    probability: Mapping[str, float],
+    refitted: Replayed,
+    judged: Sequence[int],
+    seed: int,
+) -> tuple[EffectFinding, ...]:
+    """Every candidate considered, most probable first; those that were refitted with their numbers."""
+    leads = {lead.effect: lead for one in reversed(found.rounds) for lead in one.leads}
+    trials = _telling_trials(found)
+    rows = []
+    for name in {**leads, **trials}:
+        element, _, effect = name.rpartition(":")
+        extra: dict[str, Any] = {}
+        if name in leads:
+            extra = {"screened_gain": leads[name].gain, "visibility": leads[name].visibility}
+        about: dict[str, Any] = {}
+        if name in trials:
+            about = _numbers(fitter, trials[name], refitted, judged, seed)
+            extra |= _evidence(trials[name])
+        rows.append(
+            EffectFinding(effect=effect, element=element, probability=probability.get(name, 0.0), extra=extra, **about)
+        )
+    return tuple(sorted(rows, key=lambda r: (-r.probability, -_worth(r))))
+
+
+def _telling_trials(found: Search) -> dict[str, Trial]:
+    """Of each effect the trial in the first round that tried it, or in the round that accepted it."""
+    chosen: dict[str, Trial] = {}
+    for one in found.rounds:
+        for trial in one.trials:
+            if trial.effect not in chosen or trial is one.accepted:
+                chosen[trial.effect] = trial
+    return chosen
+
+
+def _numbers(fitter: Fitter, trial: Trial, refitted: Replayed, judged: Sequence[int], seed: int) -> dict[str, Any]:
+    case, floor = fitter.case, fitter.floor
+    try:
+        replayed = heldout.replay(case, heldout.models(case, trial.fitted, judged), judged)
+    except NumericalError:  # a candidate that the training experiments already speak against
+        return {"parameters": _parameters(trial)}
+    rng = np.random.default_rng(seed)
+    return {
+        "parameters": _parameters(trial),
+        "held_out_gain": heldout.predictive_gain(case, fitter.whitening, floor, refitted, replayed, judged),
+        "shrinkage": heldout.shrinkage(case, refitted, replayed, floor, judged, rng),
+    }
+
+
+def _parameters(trial: Trial) -> dict[str, dict[str, Any]]:
+    fitted = trial.fitted
+    info = fitted.system.info
+    free = {f.name for f in fitted.free}
+    rows = {}
+    for name in info.effect(trial.effect).parameters:
+        if name in free:
+            value, interval = fitted.value(name)
+            rows[info.parameter(name).own] = {
+                "value": value,
+                "ci95": list(interval),
+                "unit": fitted.system.unit(name),
+            }
+    return rows
+
+
+def _evidence(trial: Trial) -> dict[str, Any]:
+    return {
+        "evidence_gain": trial.evidence_gain,
+        "left_out_gain": trial.left_out_gain,
+        "beside": list(trial.fitted.added[:-1]),
+    }
+
+
+def _worth(row: EffectFinding) -> float:
+    return float(row.extra.get("evidence_gain", row.extra.get("screened_gain", 0.0)))

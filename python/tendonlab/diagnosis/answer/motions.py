@@ -1,0 +1,111 @@
+"""Motions that a rig could be asked to make: within the travel, speed and acceleration that its logs show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab.fitting.case import Case
+
+DURATION, RATE = 6.0, 250.0
+SEEN = 0.995  # quantile of logged speeds and accelerations that a rig is taken to manage
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A position path of the looped axis at `RATE`, in words, with the payload that it is run with (gravity torque)."""
+
+    words: str
+    path: np.ndarray
+    payload: float = 0.0
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What the logs show of the looped axis."""
+
+    middle: float
+    travel: float
+    speed: float
+    acceleration: float
+    unit: str
+
+
+def motions(case: Case, output: str) -> list[Motion]:
+    """Slow, middling and full reversals, micro motion and a sweep; with more payload where gravity acts."""
+    reach = _reach(case, case.outputs.index(output))
+    place = output.replace("_", " ")
+    made = [
+        _reversals(reach, place, "slow reversals", 0.1, 0.1),
+        _reversals(reach, place, "reversals", 0.5, 0.5),
+        _reversals(reach, place, "full-travel triangles", 1.0, 1.0),
+        _sweep(reach, place),
+        _micro_motion(reach, place),
+    ]
+    gravity = case.system.parameters.get("gravity_torque", 0.0)
+    if gravity != 0.0:
+        heavier = 0.5 * abs(gravity)
+        full = made[2]
+        made.append(Motion(f"{full.words}, with a payload of {heavier:.2g} N·m of gravity torque", full.path, heavier))
+    return made
+
+
+def _reach(case: Case, c: int) -> Reach:
+    positions, speeds, accelerations = [], [], []
+    for experiment, ready in zip(case.experiments, case.prepared, strict=True):
+        kept = np.isfinite(ready.measured[c])
+        time = np.asarray(experiment.time)[kept]
+        width = max(1, round(0.02 * len(time) / (time[-1] - time[0])))
+        x = np.convolve(ready.measured[c][kept], np.ones(width) / width, mode="valid")
+        v = np.gradient(x, time[: len(x)])
+        positions.append(x)
+        speeds.append(np.abs(v))
+        accelerations.append(np.abs(np.gradient(v, time[: len(x)])))
+    whole = np.concatenate(positions)
+    return Reach(
+        middle=float(np.median(whole)),
+        travel=float(np.ptp(whole)) / 2,
+        speed=float(np.quantile(np.concatenate(speeds), SEEN)),
+        acceleration=float(np.quantile(np.concatenate(accelerations), SEEN)),
+        unit="m" if case.system.axis == "linear" else "rad",
+    )
+
+
+def _time() -> np.ndarray:
+    return np.arange(0.0, DURATION, 1 / RATE)
+
+
+def _reversals(reach: Reach, place: str, kind: str, share: float, of_speed: float) -> Motion:
+    """Triangles, their corners rounded to the acceleration that was seen."""
+    span, speed = share * reach.travel, of_speed * reach.speed
+    cycles = max(1.0, speed * DURATION / (4 * span))
+    triangle = 2 / np.pi * np.arcsin(np.sin(2 * np.pi * cycles * _time() / DURATION))
+    reached = 4 * span * cycles / DURATION
+    words = f"{kind} of the {place} over ±{span:.2g} {reach.unit} at {reached:.2g} {reach.unit}/s"
+    return Motion(words, reach.middle + _rounded(span * triangle, 2 * reached / reach.acceleration))
+
+
+def _sweep(reach: Reach, place: str) -> Motion:
+    span, top = 0.3 * reach.travel, 3.0
+    span = min(span, reach.speed / (2 * np.pi * top), reach.acceleration / (2 * np.pi * top) ** 2)
+    path = reach.middle + span * np.sin(2 * np.pi * (0.2 * _time() + 0.5 * (top - 0.2) * _time() ** 2 / DURATION))
+    return Motion(f"a sine sweep of the {place} from 0.2 to 3 Hz over ±{span:.2g} {reach.unit}", path)
+
+
+def _micro_motion(reach: Reach, place: str) -> Motion:
+    small = 0.01 * reach.travel
+    stairs = 0.3 * reach.travel * np.round(4 / np.pi * np.arcsin(np.sin(2 * np.pi * _time() / DURATION)))
+    moved = _rounded(stairs, np.sqrt(1.2 * reach.travel / reach.acceleration) + 0.3 * reach.travel / reach.speed)
+    path = reach.middle + moved + small * np.sin(2 * np.pi * 2 * _time())
+    words = f"micro motion of the {place}, ±{small:.2g} {reach.unit} at 2 Hz about several positions"
+    return Motion(words, path)
+
+
+def _rounded(path: np.ndarray, seconds: float) -> np.ndarray:
+    """Averaged twice over a window: corners become parabolas, steps become smooth moves."""
+    width = max(1, round(min(seconds, 0.25 * DURATION) * RATE))
+    for _ in range(2):
+        padded = np.pad(path, (width // 2, width - 1 - width // 2), mode="edge")
+        path = np.convolve(padded, np.ones(width) / width, mode="valid")
+    return path

@@ -1,0 +1,1 @@
+"""Which effects: candidates screened, refitted, contested by rivals, and selected."""

@@ -1,0 +1,181 @@
+"""What is free in a fit and what is believed of it beforehand: the user's `sd`, else the library's defaults, scaled to
+the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 1.5 of their unit, shapes 0.7 in log)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.data import NominalParameter
+from tendonlab.errors import ParameterError
+from tendonlab.simulation.catalog import Parameter
+from tendonlab.simulation.prepare import Prepared
+from tendonlab.simulation.system import System
+
+LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 1.5
+LARGEST = 700.0  # logarithm beyond which no double follows: the end of an interval that knows nothing
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What an element was seen to do: rms effort and speed, travel (sd of position), in SI."""
+
+    effort: float
+    flow: float
+    displacement: float
+
+    def of(self, dimension: str) -> float:
+        """One of this dimension; 1 for ratios and times."""
+        return {
+            "effort": self.effort,
+            "flow": self.flow,
+            "displacement": self.displacement,
+            "stiffness": self.effort / self.displacement,
+            "damping": self.effort / self.flow,
+            "output": self.displacement,
+        }.get(dimension, 1.0)
+
+
+@dataclass(frozen=True)
+class Free:
+    """A free parameter. The fit moves x: value = scale·exp(x) if `log`, else scale·x; the prior of x is normal."""
+
+    name: str
+    index: int
+    log: bool
+    scale: float
+    start: float
+    mean: float
+    sd: float
+    lower: float
+    upper: float
+
+    def core(self) -> _core.Free:
+        """For the compiled fit."""
+        return _core.Free(
+            index=self.index, log=self.log, scale=self.scale, start=self.start, mean=self.mean, sd=self.sd,
+            lower=self.lower, upper=self.upper,
+        )  # fmt: skip
+
+    def value(self, x: float) -> float:
+        """The parameter at coordinate x."""
+        return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale * x
+
+    def coordinate(self, value: float) -> float:
+        """x at a value of the parameter."""
+        return math.log(value / self.scale) if self.log else value / self.scale
+
+    def slope(self, x: float) -> float:
+        """d value / d x."""
+        return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale
+
+    @property
+    def expected(self) -> float:
+        """The value that the prior has in its middle."""
+        return min(max(self.value(self.mean), self.lower), self.upper)
+
+    def started(self, value: float) -> Free:
+        """The same, started elsewhere (inside its bounds). A logarithm starts at no 0, to which a long step may go."""
+        least = max(self.lower, self.value(-LARGEST)) if self.log else self.lower
+        return replace(self, start=min(max(value, least), self.upper))
+
+
+def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
+    """Scale of every element, from replays of the nominal simulator; a sensor's is its own signal's sd."""
+    info = system.info
+    settings = [
+        _core.Settings(tolerance=1e-4, position_scale=e.position_scale, velocity_scale=e.velocity_scale, ports=True)
+        for e in experiments
+    ]
+    runs = [
+        _core.simulate(system.kind, system.values(), system.active(), e.core, [], s)
+        for e, s in zip(experiments, settings, strict=True)
+    ]
+    ports = np.concatenate([r["ports"] for r in runs], axis=2)
+    found: dict[str, Scale] = {}
+    for i, port in enumerate(info.ports):
+        velocity, position, load, force = ports[i]
+        effort = max(_rms(load), _rms(force)) if port.load == "effort" else _rms(force)
+        seen = (effort, _rms(velocity), float(np.std(position)))
+        known = found.get(port.element, Scale(0.0, 0.0, 0.0))
+        most = (max(a, b) for a, b in zip(seen, (known.effort, known.flow, known.displacement), strict=True))
+        found[port.element] = Scale(*most)
+    found = {name: Scale(*map(_positive, (s.effort, s.flow, s.displacement))) for name, s in found.items()}
+    first = found[info.ports[0].element]
+    for c, output in enumerate(info.outputs):
+        measured = np.concatenate([e.measured[c] for e in experiments])
+        spread = float(np.nanstd(measured)) if np.isfinite(measured).any() else 1.0
+        found[f"sensor.{output.name}"] = Scale(first.effort, first.flow, _positive(spread))
+    # elements without a port act on one: the actuation on the first, the load on the joint
+    return {**dict.fromkeys(info.elements, first), "load": found.get("joint", first), **found}
+
+
+def free_parameters(
+    system: System, nominal: Mapping[str, NominalParameter], of: Mapping[str, Scale], *, added: Sequence[str] = ()
+) -> list[Free]:
+    """The free parameters of `system`: its nominal ones with sd != 0, then those of the effects in `added`."""
+    info = system.info
+    rows: list[Free] = []
+    new = {name for effect in added for name in info.effect(effect).parameters}
+    for index, p in enumerate(info.parameters):
+        if p.name not in system.parameters or p.purpose == "share":
+            continue
+        scale = (of.get(p.element or "") or next(iter(of.values()))).of(p.dimension) * abs(p.typical)
+        if p.name in new:
+            rows.append(_effect_parameter(index, p, scale, system.parameters[p.name]))
+            continue
+        stated = nominal.get(p.name)
+        if stated is None or stated.sd == 0 or (stated.sd is None and _known_by_default(p, stated.value)):
+            continue
+        rows.append(_nominal_parameter(index, p, stated, scale))
+    if not rows:
+        raise ParameterError("no parameter is free: expected at least one with sd > 0 or without sd")
+    return rows
+
+
+def start_of(system: System, effect: str, of: Mapping[str, Scale]) -> dict[str, float]:
+    """Starting values of an added effect: amplitudes 0, shapes typical of the rig."""
+    values = {}
+    for name in system.info.effect(effect).parameters:
+        p = system.info.parameter(name)
+        scale = (of.get(p.element or "") or next(iter(of.values()))).of(p.dimension)
+        values[name] = p.typical if p.purpose == "share" else 0.0 if p.purpose == "amplitude" else scale * p.typical
+    return values
+
+
+def _known_by_default(p: Parameter, value: float) -> bool:
+    """A torque constant or gear ratio without `sd` is taken at its word: only the torques' ratio to it can be seen. So
+    is 0 for what is usually not there."""
+    usual = p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
+    return usual or (value == 0.0 and p.typical == 0.0)
+
+
+def _nominal_parameter(index: int, p: Parameter, stated: NominalParameter, scale: float) -> Free:
+    lower, upper = max(p.lower, stated.lower), min(p.upper, stated.upper)
+    if p.lower >= 0 and stated.value > 0:
+        default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
+        sd = default if stated.sd is None else stated.sd / stated.value
+        return Free(p.name, index, True, stated.value, stated.value, 0.0, sd, lower, upper)
+    usual = max(AMPLITUDE_SD * scale, LOG_SD * abs(stated.value))
+    if stated.sd is None or math.isinf(stated.sd):  # inf: nothing is believed, and the scale only measures
+        sd = 1.0 if stated.sd is None else math.inf
+        return Free(p.name, index, False, usual, stated.value, stated.value / usual, sd, lower, upper)
+    return Free(p.name, index, False, stated.sd, stated.value, stated.value / stated.sd, 1.0, lower, upper)
+
+
+def _effect_parameter(index: int, p: Parameter, scale: float, value: float) -> Free:
+    if p.purpose == "shape":
+        return Free(p.name, index, True, scale, value, 0.0, SHAPE_LOG_SD, p.lower, p.upper)
+    return Free(p.name, index, False, scale, value, 0.0, AMPLITUDE_SD, p.lower, p.upper)
+
+
+def _rms(x: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(x))))
+
+
+def _positive(x: float) -> float:
+    return x if x > 0 and math.isfinite(x) else 1.0

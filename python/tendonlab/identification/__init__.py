@@ -1,0 +1,1 @@
+"""Fitting the free parameters of a simulator to logs."""

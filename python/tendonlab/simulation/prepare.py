@@ -1,0 +1,319 @@
+"""From an experiment to what the core simulates: signals, the loop that is closed, the initial state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from tendonlab import _core
+from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.simulation.catalog import unit
+from tendonlab.simulation.signals import hold, linear, motion_at_start, scales_of, smooth, smoothed
+from tendonlab.simulation.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from tendonlab.data import Controller, Dataset, Experiment
+    from tendonlab.simulation.system import System
+
+KINDS = ("auto", "controller", "free")  # that `simulate` takes: an injection needs the gains of a dataset
+
+
+@dataclass(frozen=True)
+class Replay:
+    """How experiments are replayed, the same for every model compared.
+
+    "controller": rig and known controller in free run. "injection": the logged command, and a spring `kp` and damper
+    `kd` (command per displacement, per speed) that pull the simulated motor to the logged one. "free": the logged
+    command alone."""
+
+    kind: str
+    kp: float | None = None
+    kd: float | None = None
+    output: str | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """As report.json has it."""
+        return {"kind": self.kind, "kp": self.kp, "kd": self.kd}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prepared:
+    """An experiment as the core simulates it. `measured`: (outputs, samples), NaN where missing. `initial`: the parts
+    of the initial state that are nuisances, with the sd of their priors."""
+
+    name: str
+    core: _core.Experiment
+    measured: np.ndarray
+    initial: tuple[tuple[str, int], ...]
+    initial_sd: tuple[float, ...]
+    position_scale: float
+    velocity_scale: float
+
+    @property
+    def initial_mean(self) -> np.ndarray:
+        """Means of those parts of the initial state."""
+        start = {"position": self.core.position, "velocity": self.core.velocity}
+        return np.array([start[of][axis] for of, axis in self.initial])
+
+
+def choose(dataset: Dataset, system: System) -> Replay:
+    """Free run with the known controller; else injection at a bandwidth half of the one that holds 95 % of the measured
+    motion's power (DIAGNOSIS: the same for every model); else, without a measured motor, the logged command alone."""
+    controller = dataset.controller
+    if controller is not None:
+        return Replay("controller", controller.kp, controller.kd, controller.measured)
+    first = next((s.name for s in system.info.outputs if s.axis == 0), None)
+    command = system.info.inputs[0].name if system.info.commanded else None  # another input may stand in for it
+    if first is None or first not in dataset.outputs or command not in dataset.inputs:
+        return Replay("free")
+    _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
+    moved = [(e.time, e.data[first].to_numpy(dtype=float)) for e in dataset.train if first in e.data.columns]
+    rates = [2 * np.pi * _frequency_below(time, values) for time, values in moved if np.isfinite(values).any()]
+    if not rates:
+        return Replay("free")
+    omega = 0.5 * float(np.median(rates))
+    return Replay("injection", float(inertia * omega**2), float(1.4 * inertia * omega), first)
+
+
+def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
+    """The experiment for the core: its inputs, its loop and an initial state estimated from the first samples.
+
+    Raises DatasetError where a signal that the replay needs was not logged, or is no row of numbers in time."""
+    _require_time(experiment)
+    data, time = experiment.data, experiment.time
+    outputs = system.info.outputs
+    measured = np.full((len(outputs), len(time)), np.nan)
+    for c, signal in enumerate(outputs):
+        if signal.name in data.columns:
+            measured[c] = _samples(experiment, signal.name)
+    position, velocity, free, sd = _initial_state(experiment, system, measured)
+    core = _core.Experiment(
+        kind=system.kind,
+        time=time.tolist(),
+        inputs=_inputs(experiment, system, replay),
+        loop=_loop(experiment, system, replay, measured),
+        position=position,
+        velocity=velocity,
+    )
+    scale = scales_of(time, measured[[s.axis is not None for s in outputs]])
+    return Prepared(
+        name=experiment.name, core=core, measured=measured, initial=tuple(free), initial_sd=tuple(sd),
+        position_scale=scale[0], velocity_scale=scale[1],
+    )  # fmt: skip
+
+
+def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
+    """The experiment, or one made of a frame. Raises ParameterError for anything else, such as a name, DatasetError for
+    a frame whose time is a column."""
+    from tendonlab.data import Experiment
+
+    if isinstance(given, Experiment):
+        return given
+    if not isinstance(given, pd.DataFrame):
+        told = "expected an experiment of a dataset, such as dataset['run-1'], or a frame indexed by time"
+        raise ParameterError(f"experiment is of type {type(given).__name__}: {told}")
+    if "t" in given.columns:
+        raise DatasetError("column 't' stands beside the index: expected it as the index, as set_index('t') gives it")
+    return Experiment(name="given", data=given)
+
+
+def simulate(
+    system: System, experiment: Experiment | pd.DataFrame, *, tolerance: float, ports: bool, replay: str
+) -> Trajectory:
+    """Simulate one experiment; see System.simulate."""
+    if replay not in KINDS:
+        raise ParameterError(f"replay = {replay!r}: expected one of {', '.join(KINDS)}")
+    experiment = as_experiment(experiment)
+    controller = system.controller
+    known = controller is not None and controller.reference in experiment.data.columns
+    if replay == "controller" and not known:
+        raise ParameterError("replay = 'controller': the system knows no controller, or its reference was not logged")
+    chosen = Replay("controller" if known and replay in ("auto", "controller") else "free")
+    system = _there(system, experiment)
+    ready = prepare(experiment, system, chosen)
+    run = _core.simulate(
+        system.kind, system.values(), system.active(), ready.core, [], _core.Settings(
+            tolerance=tolerance, position_scale=ready.position_scale, velocity_scale=ready.velocity_scale, ports=ports)
+    )  # fmt: skip
+    index = pd.Index(experiment.time, name="t")
+    names = [s.name for s in system.info.outputs]
+    frame = pd.DataFrame(run["outputs"].T, index=index, columns=names)
+    return Trajectory(
+        outputs=frame,
+        units={s.name: unit(s.dimension, system.axis) for s in system.info.outputs},
+        ports=_port_frame(run["ports"], system, index) if ports else None,
+        num_attempts=run["attempts"],
+        num_events=run["events"],
+    )
+
+
+def _there(system: System, experiment: Experiment) -> System:
+    """The simulator under the conditions of an experiment and with what was added; other names are covariates."""
+    values = {name: value for name, value in experiment.conditions.items() if name in system.parameters}
+    added = {n: system.parameters[n] + more for n, more in experiment.add.items() if n in system.parameters}
+    return system.with_parameters({**added, **values})
+
+
+def _port_frame(ports: np.ndarray, system: System, index: pd.Index) -> pd.DataFrame:
+    seen = ("velocity", "position", "load", "force")
+    columns = pd.MultiIndex.from_product([[p.name for p in system.info.ports], seen], names=["port", "quantity"])
+    return pd.DataFrame(ports.reshape(-1, ports.shape[-1]).T, index=index, columns=columns)
+
+
+def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_core.Signal]:
+    data, time = experiment.data, experiment.time
+    signals = []
+    for k, given in enumerate(system.info.inputs):
+        if given.name in data.columns:
+            values = _finite(experiment, given.name)
+            held = experiment.holds.get(given.name, given.hold)
+            between = hold if held else smoothed if given.between == "smooth" else linear
+            signals.append(between(time, values))
+        elif given.required and given.unless not in data.columns and not (k == 0 and replay.kind == "controller"):
+            raise DatasetError(
+                f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it"
+            )
+        else:
+            signals.append(_core.Signal())
+    return signals
+
+
+def _require_time(experiment: Experiment) -> None:
+    """Raise DatasetError unless the frame is indexed by instants, s, that increase."""
+    index = experiment.data.index
+    if index.dtype.kind not in "iuf":
+        raise DatasetError(f"{experiment.name}: the index is of type {index.dtype}; expected time in s, as numbers")
+    time = experiment.time
+    if len(time) > 1 and not np.all(np.diff(time) > 0):  # NaN fails here too
+        k = int(np.argmin(np.diff(time) > 0)) + 1
+        raise DatasetError(f"{experiment.name}: time[{k}] = {time[k]} s after {time[k - 1]} s; expected it to increase")
+
+
+def _samples(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of a signal, NaN where it was not measured."""
+    column = experiment.data[name]
+    if column.ndim != 1:
+        raise DatasetError(f"{experiment.name}: {name} stands there {column.shape[1]} times; expected one column")
+    if column.dtype.kind not in "biuf":
+        raise DatasetError(f"{experiment.name}: {name} is of type {column.dtype}; expected real numbers")
+    return np.asarray(column.to_numpy(dtype=float, na_value=np.nan))
+
+
+def _finite(experiment: Experiment, name: str) -> np.ndarray:
+    """The samples of an input, all of them numbers."""
+    values, time = _samples(experiment, name), experiment.time
+    broken = np.flatnonzero(~np.isfinite(values))
+    if broken.size:
+        k = int(broken[0])
+        raise DatasetError(f"{experiment.name}: {name} = {values[k]} at t = {time[k]:g} s; expected a finite number")
+    return values
+
+
+def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.ndarray) -> _core.Loop:
+    if replay.kind == "free":
+        return _core.Loop()
+    names = [s.name for s in system.info.outputs]
+    if replay.kind == "injection":
+        c = names.index(str(replay.output))
+        if np.isfinite(measured[c]).sum() < 2:
+            told = "the injection replay needs it in every experiment"
+            raise DatasetError(f"{experiment.name}: {names[c]} has no two measured samples; {told}")
+        return _core.Loop(
+            kind="injection",
+            axis=system.info.outputs[c].axis or 0,
+            output=c,
+            proportional=replay.kp or 0.0,
+            derivative=replay.kd or 0.0,
+            reference_weight=1.0,
+            limit=np.inf,
+            sample_time=0.0,
+            reference=smoothed(experiment.time, measured[c]),
+            disturbance=_core.Signal(),
+        )
+    controller = system.controller
+    if controller is None:
+        raise ParameterError("replay 'controller': the system knows no controller")
+    return _controller_loop(experiment, system, controller)
+
+
+def _controller_loop(experiment: Experiment, system: System, controller: Controller) -> _core.Loop:
+    time, held = experiment.time, experiment.holds
+    c = [s.name for s in system.info.outputs].index(controller.measured)
+    cascade = controller.kind == "cascade"
+    reference = _finite(experiment, controller.reference)
+    differentiated = not cascade and controller.derivative_on == "error" and controller.sample_time == 0.0
+    # A reference that is differentiated needs a slope without jumps; else it goes between samples as the contract says.
+    make = hold if held.get(controller.reference, False) else smooth if differentiated else linear
+    disturbance = _core.Signal()
+    if controller.disturbance is not None:
+        values = _finite(experiment, controller.disturbance)
+        disturbance = hold(time, values) if held.get(controller.disturbance, True) else linear(time, values)
+    return _core.Loop(
+        kind="controller",
+        axis=system.info.outputs[c].axis or 0,
+        output=c,
+        proportional=controller.kd * controller.kp if cascade else controller.kp,
+        derivative=controller.kd,
+        reference_weight=1.0 if not cascade and controller.derivative_on == "error" else 0.0,
+        limit=controller.limit,
+        sample_time=controller.sample_time,
+        reference=make(time, reference),
+        disturbance=disturbance,
+    )
+
+
+def _initial_state(
+    experiment: Experiment, system: System, measured: np.ndarray
+) -> tuple[list[float], list[float], list[tuple[str, int]], list[float]]:
+    """Start of each degree of freedom from its first samples; where it is not measured, from the others as if nothing
+    stretched. What was measured or inferred stays a nuisance, what `initial` states is known."""
+    info = system.info
+    shape, _, _ = _core.rigid_motion(system.kind, system.values(), system.active())
+    starts: dict[int, tuple[float, float, float]] = {}
+    for c, signal in enumerate(info.outputs):
+        if signal.axis is not None and np.isfinite(measured[c]).any():
+            starts[signal.axis] = (
+                *motion_at_start(experiment.time, measured[c]),
+                float(np.nanmax(measured[c]) - np.nanmin(measured[c])),
+            )
+    position, velocity, free, sd = [0.0] * info.dof, [0.0] * info.dof, [], []
+    for j in range(info.dof):
+        known = j if j in starts else next(iter(starts), None)
+        if known is None:
+            continue
+        share = shape[j] / shape[known]
+        y, rate, reach = (share * part for part in starts[known])
+        position[j], velocity[j] = y, rate
+        names = [s.name for s in info.outputs if s.axis == j]
+        stated_position = next((experiment.initial[n] for n in names if n in experiment.initial), None)
+        stated_rate = next((experiment.initial[n] for n in _velocity_names(names) if n in experiment.initial), None)
+        if stated_position is not None:
+            position[j] = stated_position
+        elif reach != 0:
+            free.append(("position", j))
+            sd.append(0.1 * abs(reach))
+        if stated_rate is not None:
+            velocity[j] = stated_rate
+        elif rate != 0:
+            free.append(("velocity", j))
+            sd.append(abs(rate))
+    return position, velocity, free, sd
+
+
+def _velocity_names(angles: list[str]) -> list[str]:
+    return [name.removesuffix("_angle") + "_velocity" for name in angles]
+
+
+def _frequency_below(time: np.ndarray, values: np.ndarray, share: float = 0.95) -> float:
+    """Frequency, Hz, below which `share` of the power of the moving part of a signal lies."""
+    kept = np.isfinite(values)
+    steady = np.linspace(time[0], time[-1], len(time))
+    centred = np.interp(steady, time[kept], values[kept])
+    centred = (centred - centred.mean()) * np.hanning(len(centred))
+    power = np.abs(np.fft.rfft(centred)) ** 2
+    total = np.cumsum(power[1:])
+    k = int(np.searchsorted(total, share * total[-1])) + 1
+    return float(k / (time[-1] - time[0]))

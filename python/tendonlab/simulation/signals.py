@@ -1,0 +1,90 @@
+"""Signals for the core: piecewise cubics through or near samples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tendonlab import _core
+
+ROUNDING = 1e-9  # of its range: a signal with less noise was computed, not measured
+
+
+def hold(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+    """Each value held until the next sample, as hardware does."""
+    return _core.Signal(time, np.column_stack([values, np.zeros((len(values), 3))]), True)
+
+
+def linear(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+    """Straight between samples."""
+    slope = np.diff(values) / np.diff(time)
+    return _core.Signal(time[:-1], np.column_stack([values[:-1], slope, np.zeros((len(slope), 2))]), False)
+
+
+def smooth(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+    """A cubic spline through the samples: for what is differentiated."""
+    from scipy.interpolate import CubicSpline
+
+    return _from_pieces(CubicSpline(time, values))
+
+
+def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+    """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation; through them where they
+    carry no noise, which leaves nothing to choose by."""
+    from tendonlab.simulation.smoothing import smoothing_spline  # loads scipy
+
+    kept = np.isfinite(values)
+    if white_noise_sd(values) <= ROUNDING * float(np.ptp(values[kept])):
+        return smooth(time[kept], values[kept])
+    return _from_pieces(smoothing_spline(time[kept], values[kept]))
+
+
+def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
+    """Position and velocity at the first sample, from a line through the first 20 ms (at least 8 samples). A velocity
+    within its uncertainty, or below 1 % of the record's typical speed, is rest."""
+    kept = np.isfinite(values)
+    t, y = time[kept] - time[0], values[kept]
+    num = max(8, int(np.searchsorted(t, 0.02)))
+    line, covariance = (
+        np.polyfit(t[:num], y[:num], 1, cov=True) if len(t) > num > 3 else (np.array([0.0, y[0]]), np.eye(2))
+    )
+    speed = float(np.ptp(y)) / max(float(t[-1]), 1e-12)
+    if abs(line[0]) < max(4.0 * float(np.sqrt(covariance[0, 0])), 0.01 * speed):
+        return float(np.mean(y[:num])), 0.0
+    return float(line[1]), float(line[0])
+
+
+def scales_of(time: np.ndarray, positions: np.ndarray) -> tuple[float, float]:
+    """A tenth of the smallest rms travel and speed among measured positions (rows): scales of the stepper."""
+    travel, speed = [], []
+    for row in positions:
+        kept = np.isfinite(row)
+        if kept.sum() < 3 or np.ptp(row[kept]) == 0:
+            continue
+        t, y = time[kept], row[kept]
+        width = max(1, min(round(0.02 * len(t) / (t[-1] - t[0])), len(t) // 3))
+        even = np.convolve(y, np.ones(width) / width, mode="valid")
+        travel.append(float(np.std(y)))
+        speed.append(float(np.std(np.gradient(even, t[: len(even)]))) if len(even) > 2 else travel[-1])
+    if not travel:
+        return 1e-2, 1e-2
+    return 0.1 * min(travel), max(0.1 * min(speed), 1e-12)
+
+
+def white_noise_sd(values: np.ndarray) -> float:
+    """Sd of the white part of a sampled signal, from its fourth differences (smooth motion cancels)."""
+    y = values[np.isfinite(values)]
+    if len(y) < 10:
+        return 0.0
+    weights = np.sqrt(70.0)  # root of the sum of squared binomials of the fourth difference
+    return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
+
+
+def _from_pieces(piecewise: Any) -> _core.Signal:
+    knots = np.asarray(piecewise.x, dtype=np.float64)
+    c = np.asarray(piecewise.c, dtype=np.float64)
+    pieces = np.flatnonzero(np.diff(knots) > 0)  # a spline repeats its end knots
+    coefficients = np.zeros((len(pieces), 4))
+    coefficients[:, : c.shape[0]] = c[::-1, pieces].T
+    return _core.Signal(np.ascontiguousarray(knots[pieces]), coefficients, False)

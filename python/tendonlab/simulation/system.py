@@ -1,0 +1,191 @@
+"""A simulator: a system of the library with numbers in it and the effects it contains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from html import escape
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+from tendonlab.errors import ParameterError
+from tendonlab.simulation.catalog import AXES, LEVEL, MEMORY, SystemInfo, nearest, parameter_unit, system_info
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from tendonlab.data import Controller, Dataset, Experiment
+    from tendonlab.simulation.trajectory import Trajectory
+
+
+@dataclass(frozen=True, kw_only=True)
+class System:
+    """A simulator of one `kind` (see `kinds`) on a "rotary" or "linear" axis. `parameters` holds the value, SI, of each
+    parameter of the system and of its `effects` ("joint:stribeck"); `controller` closes its loop in a replay where it
+    is known. It never changes: `with_parameters` and `with_effects` give another one.
+
+    Raises ParameterError for an unknown or missing name or a value outside its bounds."""
+
+    kind: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    effects: tuple[str, ...] = ()
+    axis: str = "rotary"
+    controller: Controller | None = None
+
+    def __post_init__(self) -> None:
+        if self.axis not in AXES:
+            raise ParameterError(f"axis = {self.axis!r}: expected one of {', '.join(AXES)}")
+        if isinstance(self.effects, str):
+            raise ParameterError(f"effects = {self.effects!r}: expected a list such as [{self.effects!r}]")
+        for name in self.effects:
+            self._require_company(name)
+        known = self._own_names()
+        stated = {p.name: p.typical for p in self.info.parameters if p.purpose == "condition" and p.name in known}
+        object.__setattr__(self, "parameters", {**stated, **self.parameters})
+        for name, value in self.parameters.items():
+            if name not in known:
+                offer = nearest(name, known)
+                raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
+        for name in known:
+            self._require_within(name)
+
+    @classmethod
+    def from_dataset(cls, dataset: Dataset) -> System:
+        """The nominal simulator of a dataset."""
+        values = {name: p.value for name, p in dataset.parameters.items()}
+        return cls(
+            kind=dataset.kind,
+            parameters=_with_defaults(system_info(dataset.kind), dataset.nominal_effects, values),
+            effects=tuple(dataset.nominal_effects),
+            axis=dataset.axis,
+            controller=dataset.controller,
+        )
+
+    @property
+    def info(self) -> SystemInfo:
+        """The tables of this kind of system."""
+        return system_info(self.kind)
+
+    def unit(self, name: str) -> str:
+        """Unit of a parameter on this system's axis, as in "N*m*s/rad". Raises ParameterError for an unknown one."""
+        return parameter_unit(self.info, self.info.parameter(name), self.axis)
+
+    def with_parameters(self, values: Mapping[str, float]) -> System:
+        """The same simulator with other values, SI, for some parameters. Raises ParameterError as System does."""
+        return replace(self, parameters={**self.parameters, **values})
+
+    def with_effects(self, effects: Mapping[str, Mapping[str, float]]) -> System:
+        """The simulator with effects added: {"joint:stribeck": {"static_excess": 0.1, "stribeck_velocity": 0.05}}.
+
+        Parameters go by their own or their full name, values are SI. An effect whose amplitude is exactly 0 changes
+        nothing, to the last bit. Raises ParameterError for an unknown effect or parameter, or where one is missing."""
+        if not isinstance(effects, Mapping) or not all(isinstance(given, Mapping) for given in effects.values()):
+            raise ParameterError(f"effects = {effects!r}: expected {{effect: {{parameter: value}}}}")
+        values = dict(self.parameters)
+        names = list(self.effects)
+        for name, given in effects.items():
+            effect = self.info.effect(name)
+            own = {self.info.parameter(full).own: full for full in effect.parameters}
+            for key, value in given.items():
+                full = own.get(key, key)
+                if full not in effect.parameters:
+                    raise ParameterError(f"{key} = {value}: no parameter of {name}; {nearest(key, list(own))}")
+                values[full] = value
+            if name not in names:
+                names.append(name)
+        return replace(self, parameters=values, effects=tuple(names))
+
+    def values(self) -> list[float]:
+        """One value a parameter of the core, in its order; those of effects that are off hold any allowed number."""
+        own = set(self._own_names())
+        return [
+            float(self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0))
+            if p.name in own
+            else min(max(0.0 if p.purpose == "amplitude" else p.typical, p.lower), p.upper)
+            for p in self.info.parameters
+        ]
+
+    def active(self, *, keep_zero: bool = False) -> list[bool]:
+        """One flag an effect of the core. One whose amplitude is exactly 0 is left out, unless `keep_zero`."""
+        acts = {name for name in self.effects if keep_zero or not self._vanishes(name)}
+        return [e.structural or e.name in acts for e in self.info.effects]
+
+    def simulate(
+        self,
+        experiment: Experiment | pd.DataFrame,
+        *,
+        tolerance: float = 1e-6,
+        ports: bool = False,
+        replay: str = "auto",
+    ) -> Trajectory:
+        """Simulate what `experiment` applied, and give outputs at its instants.
+
+        `experiment`: an experiment of a dataset (its conditions fix parameters, its `add` adds to them), or a frame
+        indexed by time, s, with a column an input. `replay`: "controller" (rig and known controller in free run),
+        "free" (logged inputs only) or "auto" (the controller where the simulator knows it and the reference was
+        logged). `tolerance`: relative error of a step. `ports`: also what each port sees and does.
+        Raises DatasetError for a missing input or one that is no number, NumericalError where the integration fails."""
+        from tendonlab.simulation.prepare import simulate
+
+        return simulate(self, experiment, tolerance=tolerance, ports=ports, replay=replay)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Kind, axis, effects and parameters as plain types."""
+        effects, parameters = list(self.effects), dict(self.parameters)
+        return {"kind": self.kind, "axis": self.axis, "effects": effects, "parameters": parameters}
+
+    def __repr__(self) -> str:
+        return f"System({self.kind}, {self.axis}, effects: {', '.join(self.effects) or 'none'})"
+
+    def _repr_html_(self) -> str:
+        cells = [(escape(name), f"{value:.6g}", escape(self.unit(name))) for name, value in self.parameters.items()]
+        rows = "".join(f"<tr><td>{name}</td><td>{value}</td><td>{unit}</td></tr>" for name, value, unit in cells)
+        return f"<p>{escape(repr(self))}</p><table><tr><th>parameter</th><th>value</th><th>unit</th></tr>{rows}</table>"
+
+    def _require_company(self, name: str) -> None:
+        """Raises where an effect shapes dry friction (Role::memory) and no level beside it gives any."""
+        effect = self.info.effect(name)
+        levels = [e.name for e in self.info.effects if e.element == effect.element and e.roles & LEVEL]
+        if effect.roles & MEMORY and not set(levels) & set(self.effects):
+            told = f"expected one of {', '.join(levels)} beside it"
+            raise ParameterError(f"{name} takes over the dry friction of its slot: {told}")
+        for other in effect.needs:
+            if other not in self.effects:
+                raise ParameterError(f"{name} shares parameters with {other}: expected it beside it")
+
+    def _require_within(self, name: str) -> None:
+        """Raises where a parameter has no value, or one outside its bounds."""
+        row = self.info.parameter(name)
+        expected = f"expected a value in [{row.lower}, {row.upper}] {self.unit(name)}"
+        if name not in self.parameters and row.purpose != "share":
+            raise ParameterError(f"{name}: missing; {expected} ({row.meaning})")
+        value = self.parameters.get(name, row.typical)
+        if not isinstance(value, Real) or not row.lower <= value <= row.upper:
+            raise ParameterError(f"{name} = {value!r}: {expected}")
+
+    def _own_names(self) -> list[str]:
+        """Parameters of the system itself, of what is structural, and of its effects."""
+        info = self.info
+        on = {e.name for e in info.effects if e.structural} | set(self.effects)
+        held = {name for e in info.effects if e.name in on for name in e.parameters}
+        return [p.name for p in info.parameters if p.effect is None or p.name in held]
+
+    def _vanishes(self, effect: str) -> bool:
+        rows = [self.info.parameter(name) for name in self.info.effect(effect).parameters]
+        return all(
+            self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0) == 0.0 for p in rows if p.amplitude
+        )
+
+
+def _with_defaults(info: SystemInfo, effects: tuple[str, ...], values: dict[str, float]) -> dict[str, float]:
+    """Values as given, and those that a dataset may leave out: no gravity, a torque constant of one."""
+    full = dict(values)
+    for p in info.parameters:
+        if p.effect is None and p.name not in full and p.name in ("gravity_torque", "torque_constant"):
+            full[p.name] = p.typical
+    for name in effects:
+        for full_name in info.effect(name).parameters:
+            row = info.parameter(full_name)
+            if full_name not in full and row.purpose not in ("shape", "condition"):
+                full[full_name] = row.typical if row.purpose == "share" else 0.0
+    return full

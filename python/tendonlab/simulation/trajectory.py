@@ -1,0 +1,62 @@
+"""What a simulation gives: outputs at the instants of the experiment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from tendonlab.errors import ParameterError
+from tendonlab.simulation.catalog import nearest
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectory:
+    """A simulated run; `run["joint_angle"]` is one output. `outputs`: indexed by time "t", s, one column a signal, SI.
+
+    `units`: of each output. `ports`: a frame with columns (port, "velocity" | "position" | "load" | "force") where it
+    was asked for. `num_attempts`: steps that were tried; `num_events`: reversals, stops and edges that were met."""
+
+    outputs: pd.DataFrame = field(repr=False)
+    units: dict[str, str] = field(repr=False)
+    ports: pd.DataFrame | None = field(default=None, repr=False)
+    num_attempts: int = 0
+    num_events: int = 0
+
+    def __getitem__(self, signal: str) -> pd.Series:
+        return self.outputs[self._known(signal)]
+
+    def plot(self, ax: Axes | None = None, *, signal: str | None = None) -> Axes:
+        """Draw one output (the first unless named) against time on `ax`, or on the current axes.
+
+        Raises ParameterError for an output that the system does not have."""
+        import matplotlib.pyplot as plt
+
+        ax = plt.gca() if ax is None else ax
+        name = str(self.outputs.columns[0]) if signal is None else self._known(signal)
+        ax.plot(self.outputs.index, self.outputs[name], lw=1.0, label=name)
+        ax.set(xlabel="time (s)", ylabel=f"{name} ({self.units[name]})")
+        return ax
+
+    def _known(self, signal: str) -> str:
+        known = [str(c) for c in self.outputs.columns]
+        if not isinstance(signal, str):
+            raise ParameterError(f"{signal!r} is no output: expected one name; `outputs` is the frame of all")
+        if signal not in known:
+            raise ParameterError(f"{signal!r} is no output; {nearest(signal, known)}")
+        return signal
+
+    def to_dict(self) -> dict[str, Any]:
+        """Time and outputs as lists."""
+        return {"t": self.outputs.index.tolist(), **{str(c): self.outputs[c].tolist() for c in self.outputs.columns}}
+
+    def __repr__(self) -> str:
+        time = self.outputs.index
+        span = f", {time[0]:g} to {time[-1]:g} s" if len(time) else ""
+        return f"Trajectory({', '.join(map(str, self.outputs.columns))}; {len(time)} samples{span})"
+
+    def _repr_html_(self) -> str:
+        return str(self.outputs.describe().to_html())

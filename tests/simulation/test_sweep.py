@@ -1,0 +1,155 @@
+"""A sweep is many simulations: the same numbers as one by one, and no run costs another."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tendonlab as tl
+from tendonlab.simulation import sweep
+from tendonlab.simulation.system import System
+
+TIME = np.arange(0.0, 1.0, 0.005)
+PUSHED = pd.DataFrame({"motor_torque": 0.4 * np.sin(6.0 * TIME)}, index=pd.Index(TIME, name="t"))
+VALUES = {"inertia": 0.02, "gravity_torque": 0.5, "torque_constant": 1.0, "coulomb": 0.05, "viscous": 0.03}
+SIM = tl.System(kind="rigid_joint", parameters=VALUES, effects=("joint:coulomb", "joint:viscous"))
+GRID = {"coulomb": [0.02, 0.05, 0.1], "inertia": np.array([0.01, 0.02])}
+
+
+class OneByOne(Executor):
+    """Runs a job when it is submitted; Ctrl-C arrives while the jobs from `interrupted` on are still waiting."""
+
+    def __init__(self, interrupted: int | None = None) -> None:
+        self.interrupted = interrupted
+        self.jobs: list[Future[Any]] = []
+
+    def submit(self, function: Any, /, *given: Any, **named: Any) -> Future[Any]:
+        job: Future[Any] = Future()
+        if self.interrupted is None or len(self.jobs) < self.interrupted:
+            job.set_running_or_notify_cancel()
+            try:
+                job.set_result(function(*given, **named))
+            except Exception as error:
+                job.set_exception(error)
+        self.jobs.append(job)
+        return job
+
+
+@pytest.fixture
+def ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C at the moment when nothing is left but jobs that wait."""
+
+    def done(jobs: dict[Future[Any], int]) -> Iterator[Future[Any]]:
+        yield from [job for job in jobs if job.done()]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sweep, "as_completed", done)
+
+
+def fails_above(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = System.simulate
+
+    def simulate(self: System, *given: Any, **named: Any) -> tl.Trajectory:
+        if self.parameters["coulomb"] > limit:
+            raise tl.NumericalError("joint_angle is not finite from t = 0.1 s")
+        return plain(self, *given, **named)
+
+    monkeypatch.setattr(System, "simulate", simulate)
+
+
+def test_each_point_is_the_simulation_with_its_parameters() -> None:
+    swept = tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
+    assert dict(swept.sizes) == {"coulomb": 3, "inertia": 2, "t": len(TIME)}
+    assert list(swept.data_vars) == ["joint_angle", "joint_velocity"]
+    assert set(swept["message"].to_numpy().ravel()) == {""}
+    for coulomb in GRID["coulomb"]:
+        for inertia in GRID["inertia"]:
+            alone = SIM.with_parameters({"coulomb": coulomb, "inertia": inertia}).simulate(PUSHED)
+            point = swept.sel(coulomb=coulomb, inertia=inertia)
+            np.testing.assert_array_equal(point["joint_angle"], alone["joint_angle"])
+            np.testing.assert_array_equal(point["joint_velocity"], alone["joint_velocity"])
+
+
+def test_axes_and_outputs_carry_their_units() -> None:
+    swept = tl.sweep(SIM, {"coulomb": [0.02]}, experiment=PUSHED, progress=False)
+    units = {str(name): swept[name].attrs["unit"] for name in ("coulomb", "t", "joint_angle", "joint_velocity")}
+    assert units == {"coulomb": "N*m", "t": "s", "joint_angle": "rad", "joint_velocity": "rad/s"}
+
+
+def test_whatever_runs_it_the_bits_are_the_same() -> None:
+    swept = tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
+    with ThreadPoolExecutor(1) as thread, ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes:
+        for executor in (thread, processes, OneByOne()):
+            assert swept.identical(tl.sweep(SIM, GRID, experiment=PUSHED, executor=executor, progress=False))
+        assert thread.submit(int, "3").result() == 3  # an executor that was lent stays open
+
+
+def test_without_a_grid_it_is_one_simulation() -> None:
+    swept = tl.sweep(SIM, {}, experiment=PUSHED, progress=False)
+    np.testing.assert_array_equal(swept["joint_angle"], SIM.simulate(PUSHED)["joint_angle"])
+
+
+def test_a_point_that_fails_costs_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
+    fails_above(0.07, monkeypatch)
+    swept = tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
+    assert swept["message"].sel(coulomb=0.1).to_numpy().tolist() == ["joint_angle is not finite from t = 0.1 s"] * 2
+    assert np.isnan(swept["joint_angle"].sel(coulomb=0.1)).all()
+    assert swept.isel(coulomb=slice(2)).identical(whole.isel(coulomb=slice(2)))
+
+
+def test_where_every_point_fails_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    fails_above(0.0, monkeypatch)
+    with pytest.raises(tl.NumericalError, match="none of 6 points could be simulated; the first: joint_angle is not"):
+        tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
+
+
+@pytest.mark.usefixtures("ctrl_c")
+def test_ctrl_c_keeps_what_was_done() -> None:
+    executor = OneByOne(interrupted=4)
+    swept = tl.sweep(SIM, GRID, experiment=PUSHED, executor=executor, progress=False)
+    assert swept["message"].to_numpy().ravel().tolist() == [""] * 4 + ["interrupted"] * 2
+    assert np.isfinite(swept["joint_angle"]).sum() == 4 * len(TIME)
+    assert all(job.cancelled() for job in executor.jobs[4:])
+
+
+@pytest.mark.usefixtures("ctrl_c")
+def test_ctrl_c_before_anything_is_done_is_ctrl_c() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        tl.sweep(SIM, GRID, experiment=PUSHED, executor=OneByOne(interrupted=0), progress=False)
+
+
+@pytest.mark.parametrize(
+    ("grid", "told"),
+    [
+        ({"coulom": [0.1]}, "coulom = 0.1: no parameter of rigid_joint .* did you mean 'coulomb'"),
+        ({"coulomb": [0.1, -0.1]}, r"coulomb = -0.1: expected a value in \[0.0, inf\] N\*m"),
+        ({"coulomb": []}, r"coulomb has shape \(0,\): expected a list of values"),
+        ({"coulomb": ["low"]}, r"coulomb = \['low'\]: expected a list of numbers"),
+        ({"coulomb": [0.1, 0.2, 0.1]}, "coulomb: 0.1 stands there twice"),
+        (["coulomb"], "grid is a list: expected a mapping"),
+        ({"coulomb": 0.1}, r"coulomb has shape \(\): expected a list of values"),
+    ],
+)
+def test_a_grid_that_means_nothing_is_refused(grid: Any, told: str) -> None:
+    with pytest.raises(tl.ParameterError, match=told):
+        tl.sweep(SIM, grid, experiment=PUSHED, progress=False)
+
+
+def test_a_missing_input_is_named() -> None:
+    with pytest.raises(tl.DatasetError, match="input 'motor_torque' was not logged"):
+        tl.sweep(SIM, GRID, experiment=PUSHED.rename(columns={"motor_torque": "torque"}), progress=False)
+
+
+def test_progress_is_shown_only_where_it_is_wanted(capsys: pytest.CaptureFixture[str]) -> None:
+    tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
+    assert capsys.readouterr() == ("", "")
+    tl.sweep(SIM, GRID, experiment=PUSHED)
+    assert re.search(r"sweep: 100%.* 6/6 ", capsys.readouterr().err)
