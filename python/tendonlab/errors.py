@@ -1,5 +1,8 @@
 """The three errors of the library: each message carries the name, the offending value and what was expected."""
 
+import difflib
+from collections.abc import Iterable
+
 
 class ParameterError(ValueError):
     """A name or a value given by the caller is unknown or out of its bounds."""
@@ -11,3 +14,18 @@ class DatasetError(ValueError):
 
 class NumericalError(ArithmeticError):
     """A computation left the finite numbers: names the quantity, when, and the likely cause."""
+
+
+def nearest_name(name: str, known: Iterable[str], *, likeness: float = 0.6) -> str | None:
+    """The known name most like `name`, or None where none reaches `likeness`, from 0 to 1 (the same)."""
+    matches = difflib.get_close_matches(str(name), list(known), n=1, cutoff=likeness)
+    return matches[0] if matches else None
+
+
+def expected_one_of(name: str, known: Iterable[str]) -> str:
+    """What was expected instead of `name`, for a message: the nearest known name, otherwise all of them."""
+    names = list(known)
+    match = nearest_name(name, names)
+    if match is not None:
+        return f"did you mean {match!r}?"
+    return f"expected one of {', '.join(names)}" if names else "none is available"

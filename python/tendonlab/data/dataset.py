@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tendonlab.data.names import expected_one_of
-from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.errors import DatasetError, ParameterError, expected_one_of
 
 if TYPE_CHECKING:
     import pandas as pd

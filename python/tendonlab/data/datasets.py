@@ -14,8 +14,7 @@ from urllib.parse import urlparse
 from urllib.request import urlopen
 
 from tendonlab.data.emps import write_emps
-from tendonlab.data.names import expected_one_of
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, expected_one_of
 
 SOURCE_VARIABLE = "TENDONLAB_DATA"
 REGISTRY_VARIABLE = "TENDONLAB_REGISTRY"

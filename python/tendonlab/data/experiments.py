@@ -11,13 +11,12 @@ import numpy as np
 
 from tendonlab.data.conditions import read_conditions
 from tendonlab.data.dataset import Experiment, NominalParameter, SignalSpec
-from tendonlab.data.names import expected_one_of
 from tendonlab.data.parameters import find_parameter, require_within
 from tendonlab.data.read import Columns, MissingColumnError, read_columns
 from tendonlab.data.schema import Table
 from tendonlab.data.split import choose_test
 from tendonlab.data.units import convert, require_dimension
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, expected_one_of
 from tendonlab.simulation.catalog import SystemInfo
 
 if TYPE_CHECKING:

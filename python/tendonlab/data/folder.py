@@ -9,11 +9,10 @@ from tendonlab.data.controller import check_controller, read_controller
 from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
 from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
 from tendonlab.data.missing_inputs import absent_inputs
-from tendonlab.data.names import nearest
 from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
 from tendonlab.data.schema import FILE, read_toml
 from tendonlab.data.signals import read_signals
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, nearest_name
 from tendonlab.simulation import catalog
 
 
@@ -99,10 +98,12 @@ def _doubts(experiments: Iterable[Experiment], signals: Iterable[SignalSpec], *,
     known = [signal.name for signal in (*info.inputs, *info.outputs)]
     parameters = [parameter.name for parameter in info.parameters]
     covariates = {
-        f"signal {spec.name!r}": nearest(spec.name, known, likeness=0.8) for spec in signals if spec.role == "covariate"
+        f"signal {spec.name!r}": nearest_name(spec.name, known, likeness=0.8)
+        for spec in signals
+        if spec.role == "covariate"
     }
     conditions = {name for experiment in experiments for name in experiment.conditions if name not in parameters}
-    covariates |= {f"condition {name!r}": nearest(name, parameters, likeness=0.8) for name in sorted(conditions)}
+    covariates |= {f"condition {name!r}": nearest_name(name, parameters, likeness=0.8) for name in sorted(conditions)}
     return [
         f"{what} is unknown to {info.kind} and kept as a covariate; {match!r} has nearly that name"
         for what, match in covariates.items()

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterable, Mapping
 
 from tendonlab.data.dataset import Experiment, NominalParameter
-from tendonlab.data.names import expected_one_of
 from tendonlab.data.schema import Table
+from tendonlab.errors import expected_one_of
 from tendonlab.simulation.catalog import Parameter, SystemInfo, kinds, system_info
 
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tendonlab.data.names import expected_one_of
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, expected_one_of
 
 FORMAT = "tendonlab-dataset/1"
 FILE = "dataset.toml"

@@ -1,10 +1,9 @@
 """The [signals] tables: role, unit and holding of each signal."""
 
 from tendonlab.data.dataset import Controller, SignalSpec
-from tendonlab.data.names import nearest
 from tendonlab.data.schema import Table
 from tendonlab.data.units import COMMAND_UNITS, base_unit, convert_difference, require_dimension, same_dimension
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, nearest_name
 from tendonlab.simulation.catalog import Signal, SystemInfo, unit
 
 KEYS = ("column", "unit", "hold", "noise_sd", "resolution")
@@ -117,6 +116,6 @@ def _find(name: str, info: SystemInfo) -> Signal | None:
 def _require_inputs(tables: Table, info: SystemInfo) -> None:
     for signal in info.inputs:
         if signal.required and signal.name not in tables.values and signal.unless not in tables.values:
-            match = nearest(signal.name, tables.values)
+            match = nearest_name(signal.name, tables.values)
             hint = f"; {match!r} stands there instead" if match is not None else ""
             raise tables.error(signal.name, f"is missing; expected this input, which {info.kind} requires{hint}")

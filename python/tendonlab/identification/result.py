@@ -12,9 +12,8 @@ import numpy as np
 import pandas as pd
 
 from tendonlab import _core
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.fitting.priors import Free
-from tendonlab.simulation.catalog import nearest
 from tendonlab.simulation.system import System
 
 if TYPE_CHECKING:
@@ -149,7 +148,7 @@ class Identification:
 
         name = next(iter(self.residuals)) if experiment is None else experiment
         if name not in self.residuals:
-            raise ParameterError(f"experiment {name!r} was not fitted; {nearest(name, list(self.residuals))}")
+            raise ParameterError(f"experiment {name!r} was not fitted; {expected_one_of(name, list(self.residuals))}")
         ax = plt.gca() if ax is None else ax
         for output, values in self.residuals[name].items():
             ax.plot(values.index, values, lw=0.8, label=str(output))
@@ -206,7 +205,9 @@ class Identification:
 
     def _require(self, name: str) -> None:
         if name not in self.parameters.index:
-            raise ParameterError(f"{name!r} was not fitted; {nearest(name, [str(n) for n in self.parameters.index])}")
+            raise ParameterError(
+                f"{name!r} was not fitted; {expected_one_of(name, [str(n) for n in self.parameters.index])}"
+            )
 
 
 def _bounded(value: float) -> float | None:

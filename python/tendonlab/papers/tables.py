@@ -6,8 +6,7 @@ from importlib.resources import files
 
 import pandas as pd
 
-from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import nearest
+from tendonlab.errors import ParameterError, expected_one_of
 
 
 def tables() -> tuple[str, ...]:
@@ -22,6 +21,6 @@ def table(name: str) -> pd.DataFrame:
 
     Raises ParameterError for an unknown name."""
     if name not in tables():
-        raise ParameterError(f"table = {name!r}: {nearest(name, tables())}")
+        raise ParameterError(f"table = {name!r}: {expected_one_of(name, tables())}")
     with files("tendonlab").joinpath("bundled", "papers", f"{name}.csv").open(encoding="utf-8") as text:
         return pd.read_csv(text)

@@ -6,7 +6,6 @@ from tendonlab.procedures.correlation import correlation_shift
 from tendonlab.procedures.denoise import universal_threshold, wavelet_denoise
 from tendonlab.procedures.differentiate import velocity
 from tendonlab.procedures.filtering import lowpass
-from tendonlab.procedures.jumps import jumps, time_shift
 from tendonlab.procedures.load_cells import LoadCell, pretension_from_load_cells, reactive_torque
 from tendonlab.procedures.maps import MapPoint, friction_map, map_point
 from tendonlab.procedures.markers import MarkerSpline, WrapAngle, sort_markers, wrap_angle_uncertainty
@@ -16,6 +15,7 @@ from tendonlab.procedures.reversal import reversal_mask, reversals
 from tendonlab.procedures.search import SearchResult, global_search
 from tendonlab.procedures.sheath_shape import Shape
 from tendonlab.procedures.steady import steady_segment
+from tendonlab.procedures.synchronisation import jumps, time_shift
 
 __all__ = [
     "LoadCell",

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import correlate
 
+from tendonlab.arguments import along, interval, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, interval, times, within
 
 
 def correlation_shift(time: ArrayLike, a: ArrayLike, b: ArrayLike, *, longest: float) -> float:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import detrend
 
+from tendonlab.arguments import choice, samples, whole, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import choice, samples, whole, within
 
 GAUSSIAN = 0.6745  # median of |x| of a standard normal variable: turns a median into an sd
 MODES = ("soft", "hard", "garrote")

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import differential_evolution, least_squares
 from tqdm import tqdm
 
+from tendonlab.arguments import samples
 from tendonlab.errors import NumericalError, ParameterError
-from tendonlab.procedures.check import samples
 
 SAME_COST = 1e-4  # relative: starts that end this near the best have found the same optimum
 AT_BOUND = 1e-6  # of the range: descents stay inside the box and come as near as this and nearer

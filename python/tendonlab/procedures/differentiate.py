@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tendonlab.arguments import along, choice, interval, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, choice, interval, times, within
 from tendonlab.simulation.signals import white_noise_sd
 
 METHODS = ("central", "spline", "savgol")

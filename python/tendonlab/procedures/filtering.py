@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import butter, sosfilt, sosfilt_zi, sosfiltfilt
 
+from tendonlab.arguments import positive, samples, whole, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import positive, samples, whole, within
 
 
 def lowpass(

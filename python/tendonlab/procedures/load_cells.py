@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import lfilter
 
+from tendonlab.arguments import along, interval, positive, reals, samples, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, interval, positive, reals, samples, times, within
 
 STANDARD_GRAVITY = 9.80665  # m/s^2
 

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from tendonlab.arguments import along, times, whole, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, times, whole, within
 from tendonlab.procedures.steady import steady_segment
 
 SAME_SPEED = 0.02  # share by which speeds of one set point may differ from one to the next

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline, splev, splprep
 
-from tendonlab.errors import DatasetError, ParameterError
-from tendonlab.procedures.check import positive, reals, samples, whole, within
+from tendonlab.arguments import positive, reals, samples, whole, within
+from tendonlab.errors import DatasetError, ParameterError, expected_one_of
 from tendonlab.procedures.sheath_shape import Shape
 from tendonlab.seed import generator
-from tendonlab.simulation.catalog import nearest
 
 NUM_SAMPLES = 500  # of the paper
 RULES = ("left", "trapezoid", "turning")
@@ -60,7 +59,7 @@ class MarkerSpline:
         object.__setattr__(self, "points", _checked(self.points))
         for name, value, known in (("kind", self.kind, KINDS), ("parameter", self.parameter, PARAMETERS)):
             if value not in known:
-                raise ParameterError(f"{name} = {value!r}: {nearest(value, known)}")
+                raise ParameterError(f"{name} = {value!r}: {expected_one_of(value, known)}")
         within("smoothing", self.smoothing, 0.0, np.inf, "m, a marker's sd")
         whole("num_samples", self.num_samples, 3)
 
@@ -166,7 +165,7 @@ def _checked(points: np.ndarray) -> np.ndarray:
 def _known_rule(rule: str, *, without: str = "") -> str:
     known = tuple(name for name in RULES if name != without)
     if rule not in known:
-        raise ParameterError(f"rule = {rule!r}: {nearest(rule, known)}")
+        raise ParameterError(f"rule = {rule!r}: {expected_one_of(rule, known)}")
     return rule
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tendonlab.arguments import whole, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import whole, within
 from tendonlab.seed import generator
 
 

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from scipy.integrate import trapezoid
 from scipy.signal import savgol_coeffs, savgol_filter
 
+from tendonlab.arguments import along, interval, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, interval, times, within
 from tendonlab.procedures.runs import blocks, of_samples, stretches, trimmed
 from tendonlab.simulation.signals import white_noise_sd
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tendonlab.arguments import along, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, times, within
 
 REST = 0.01  # share of the greatest speed that counts as rest: what noise crosses there is no reversal
 

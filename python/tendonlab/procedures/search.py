@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import qmc
 
-from tendonlab.procedures.check import choice, whole
+from tendonlab.arguments import choice, whole
 from tendonlab.procedures.descent import AT_BOUND, Box, Descent, evolution, multistart, rank_of, sd_of
 from tendonlab.seed import generator
 

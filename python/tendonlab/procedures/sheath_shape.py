@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tendonlab.arguments import positive, reals, whole, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import positive, reals, whole, within
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.signal import savgol_coeffs, savgol_filter
 
+from tendonlab.arguments import along, interval, positive, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import along, interval, positive, times, within
 from tendonlab.procedures.runs import blocks, of_samples, stretches, trimmed
 from tendonlab.simulation.signals import white_noise_sd
 

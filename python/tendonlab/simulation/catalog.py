@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 from functools import cache
 from typing import TypeVar
 
 from tendonlab import _core
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, expected_one_of
 
 AXES = ("rotary", "linear")
 LEVEL, MEMORY, REFINES, WHOLE = 2, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
@@ -123,7 +122,7 @@ def kinds() -> tuple[str, ...]:
 def system_info(kind: str) -> SystemInfo:
     """The tables of the system `kind`; ParameterError names the nearest kind where there is none."""
     if kind not in kinds():
-        raise ParameterError(f"system kind = {kind!r}: {nearest(kind, kinds())}")
+        raise ParameterError(f"system kind = {kind!r}: {expected_one_of(kind, kinds())}")
     raw = _core.system_info(kind)
     return SystemInfo(
         kind=raw["kind"],
@@ -166,13 +165,6 @@ def parameter_unit(info: SystemInfo, parameter: Parameter, axis: str) -> str:
     return unit(next(s.dimension for s in info.outputs if s.name == signal), axis)
 
 
-def nearest(name: str, known: tuple[str, ...] | list[str]) -> str:
-    """ "expected one of …", with the nearest known name first where one is near."""
-    near = difflib.get_close_matches(str(name), known, n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"{hint}expected one of {', '.join(known)}"
-
-
 def _signal(raw: dict[str, object]) -> Signal:
     axis = raw["axis"]
     dimension = str(raw["dimension"])
@@ -193,4 +185,4 @@ def _named(items: tuple[Named, ...], name: str, what: str) -> Named:
     for item in items:
         if item.name == name:
             return item
-    raise ParameterError(f"{name!r} is no {what}; {nearest(name, [i.name for i in items])}")
+    raise ParameterError(f"{name!r} is no {what}; {expected_one_of(name, [i.name for i in items])}")

@@ -8,8 +8,8 @@ from html import escape
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import AXES, LEVEL, MEMORY, SystemInfo, nearest, parameter_unit, system_info
+from tendonlab.errors import ParameterError, expected_one_of
+from tendonlab.simulation.catalog import AXES, LEVEL, MEMORY, SystemInfo, parameter_unit, system_info
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,7 +44,7 @@ class System:
         object.__setattr__(self, "parameters", {**stated, **self.parameters})
         for name, value in self.parameters.items():
             if name not in known:
-                offer = nearest(name, known)
+                offer = expected_one_of(name, known)
                 raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
         for name in known:
             self._require_within(name)
@@ -89,7 +89,7 @@ class System:
             for key, value in given.items():
                 full = own.get(key, key)
                 if full not in effect.parameters:
-                    raise ParameterError(f"{key} = {value}: no parameter of {name}; {nearest(key, list(own))}")
+                    raise ParameterError(f"{key} = {value}: no parameter of {name}; {expected_one_of(key, own)}")
                 values[full] = value
             if name not in names:
                 names.append(name)

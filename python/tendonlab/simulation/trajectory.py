@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import nearest
+from tendonlab.errors import ParameterError, expected_one_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +45,7 @@ class Trajectory:
         if not isinstance(signal, str):
             raise ParameterError(f"{signal!r} is no output: expected one name; `outputs` is the frame of all")
         if signal not in known:
-            raise ParameterError(f"{signal!r} is no output; {nearest(signal, known)}")
+            raise ParameterError(f"{signal!r} is no output; {expected_one_of(signal, known)}")
         return signal
 
     def to_dict(self) -> dict[str, Any]:

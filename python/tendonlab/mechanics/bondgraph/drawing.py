@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tendonlab.arguments import samples
 from tendonlab.errors import ParameterError
 from tendonlab.mechanics.bondgraph.assignment import Causality, causality
 from tendonlab.mechanics.bondgraph.elements import Bond, Element, Junction
 from tendonlab.mechanics.bondgraph.graph import BondGraph
-from tendonlab.procedures.check import samples
-from tendonlab.report.plot.style import COLOURS, INK, MUTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Place = tuple[float, float]
+INK, MUTED = "#1b1f24", "#5b6570"
+INTEGRAL, DIFFERENTIAL = "#0072b2", "#d55e00"  # causality of an element: Okabe–Ito blue and vermilion
 _SIZE = 9.0  # of letters, points
 
 
@@ -114,7 +115,7 @@ def _draw_bond(
     ax.plot(*np.stack([end, barb]).T, color=INK, lw=0.9, zorder=2)
     if found is not None:
         middle = end if found.stroke[bond] == bond.head else start
-        colour = COLOURS["with_effect"] if bond.ends & set(found.dependent) else COLOURS["refitted"]
+        colour = DIFFERENTIAL if bond.ends & set(found.dependent) else INTEGRAL
         bar = 0.065 * across / inches
         ax.plot(*np.stack([middle - bar, middle + bar]).T, color=colour, lw=1.8, zorder=2)
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from tendonlab.arguments import within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import within
 
 Law = Callable[[Any], Any]
 

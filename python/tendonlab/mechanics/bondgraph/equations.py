@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from tendonlab.arguments import choice, within
 from tendonlab.errors import ParameterError
 from tendonlab.mechanics.bondgraph.assignment import Causality, causality
 from tendonlab.mechanics.bondgraph.elements import GY, MTF, TF, Bond, C, Element, I, Junction, One, R, Source, Zero
 from tendonlab.mechanics.bondgraph.graph import BondGraph
-from tendonlab.procedures.check import choice, within
 
 _STEP = 1e-30  # of complex differentiation: nothing is subtracted, so it may be as small as we like
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tendonlab.arguments import positive
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bench import CENTRES, Configuration, Shaft
-from tendonlab.procedures.check import positive
 
 SCOPES = ("pulley", "transmission")
 AXES = ("z", "y")

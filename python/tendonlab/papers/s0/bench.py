@@ -9,9 +9,8 @@ from functools import cache
 
 import pandas as pd
 
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.papers.tables import table
-from tendonlab.simulation.catalog import nearest
 
 CENTRES = 0.150  # m, capstan axis to pulley axis (S0 section 3.1)
 CABLE_DIAMETER = 1.59e-3  # m, 7x7 steel (S0 section 2.1)
@@ -86,7 +85,7 @@ def configuration(name: str) -> Configuration:
     """The configuration of that name; ParameterError, with the nearest name, where there is none."""
     rows = table("S0_table3_configurations").set_index("configuration")
     if name not in rows.index:
-        raise ParameterError(f"configuration = {name!r}: {nearest(name, configurations())}")
+        raise ParameterError(f"configuration = {name!r}: {expected_one_of(name, configurations())}")
     row = dict(rows.loc[name])
     transmission, _, load = name.partition("-")
     return Configuration(

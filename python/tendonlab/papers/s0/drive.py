@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from tendonlab.arguments import positive, samples
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bench import CENTRES, Configuration
-from tendonlab.procedures.check import positive, samples
 
 if TYPE_CHECKING:
     from tendonlab._core import Law

@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import brentq
 
+from tendonlab.arguments import choice
 from tendonlab.papers.s0.bearings import pulley_reactions, relative_load
 from tendonlab.papers.s0.bench import TRANSMISSIONS, configuration, loaded
 from tendonlab.papers.s0.maps import LOADED, printed_peaks
-from tendonlab.procedures.check import choice
 
 BORE_RADIUS = 0.0125  # m, of the bearing 61905
 CATALOGUE_COEFFICIENT = 0.0015  # 1, friction of a deep groove ball bearing at its bore

@@ -7,12 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import samples
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0 import twin
 from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, TRANSMISSIONS, Configuration, loaded
 from tendonlab.papers.tables import table
-from tendonlab.procedures.check import samples
 
 LOADED = LOADS[1:]
 FINE = np.arange(1.0, 105.01, 0.25)  # rad/s, on which peaks and valleys are sought

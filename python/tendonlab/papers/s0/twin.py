@@ -9,11 +9,11 @@ from functools import cache
 
 import numpy as np
 
+from tendonlab.arguments import whole
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0.bearings import relative_load
 from tendonlab.papers.s0.bench import Configuration, loaded
 from tendonlab.papers.tables import table
-from tendonlab.procedures.check import whole
 from tendonlab.seed import generator
 
 SPEEDS = np.concatenate([[1.0], np.arange(5.0, 106.0, 5.0)])  # rad/s, of the input; reconstructed grid

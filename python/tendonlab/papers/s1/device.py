@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import whole
 from tendonlab.errors import ParameterError
 from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
 from tendonlab.papers.tables import table
-from tendonlab.procedures.check import whole
 
 NUM_JOINTS = 4
 LOAD_LEVELS = (0.2, 1.0, 5.0)  # of gravity [reconstructed]

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import whole
 from tendonlab.mechanics.tendons import Model, TendonTransmission
 from tendonlab.papers.s1.device import LOAD_LEVELS, example_device, gravity
 from tendonlab.papers.s1.free_motion import FeedForward, FreeMotion, evaluate_free_motion, free_motion
@@ -21,7 +22,6 @@ from tendonlab.papers.s1.identification import (
     residual_error,
     true_motor_friction,
 )
-from tendonlab.procedures.check import whole
 
 SPEEDS = (-6.0, -4.0, -2.0, 2.0, 4.0, 6.0)  # rad/s of the motor under test [reconstructed]
 NOISY_SPEEDS = tuple(sign * float(v) for sign in (-1, 1) for v in range(1, 7))  # rad/s [reconstructed]

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import positive
 from tendonlab.errors import ParameterError
 from tendonlab.mechanics.tendons import Model, Propagation, TendonTransmission
 from tendonlab.papers.s1.device import gravity
-from tendonlab.procedures.check import positive
 
 AMPLITUDE = np.array([0.5, 0.35, 0.4, 0.5])  # rad [reconstructed]
 FREQUENCY = np.array([0.25, 0.2, 0.3, 0.35])  # Hz [reconstructed]

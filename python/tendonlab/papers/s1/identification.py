@@ -10,10 +10,10 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import samples, within
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.mechanics.tendons import BranchLosses, Model, TendonTransmission
 from tendonlab.procedures import steady_averages
-from tendonlab.procedures.check import samples, within
 
 Strategy = Literal["S1", "S2"]
 Form = Literal["exact", "first_order", "printed"]

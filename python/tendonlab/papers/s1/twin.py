@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import positive, samples
 from tendonlab.mechanics.tendons import TendonTransmission
 from tendonlab.papers.s1.device import GRAVITY, LOAD_LEVELS, example_device
 from tendonlab.papers.s1.identification import decompose, identify_joint, shares_by_bearings
-from tendonlab.procedures.check import positive, samples
 from tendonlab.seed import generator
 
 NOISE = 5e-3  # N·m, of a motor torque [reconstructed]

@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tendonlab.errors import ParameterError
+from tendonlab.arguments import choice
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.papers.tables import table
-from tendonlab.procedures.check import choice
-from tendonlab.simulation.catalog import nearest
 
 GRAVITY = 9.80665  # m/s^2
 PRELOAD = 200.0  # N, of the cables in all runs; reconstructed: printed for the cable test only
@@ -88,7 +87,7 @@ def constants(*, viscous_reading: str = "A") -> Constants:
 
     Raises ParameterError for another reading."""
     if viscous_reading not in VISCOUS_READINGS:
-        known = nearest(viscous_reading, tuple(VISCOUS_READINGS))
+        known = expected_one_of(viscous_reading, VISCOUS_READINGS)
         raise ParameterError(f"viscous_reading = {viscous_reading!r}: {known}")
     one = table("S2_table1_parameters").set_index("symbol")["value_SI"]
     names = ["L_m", "R_m", "J_m", "k_m", "m_1", "J_1", "m_2", "J_2", "d_11", "d_12", "d_21", "d_22", "r"]

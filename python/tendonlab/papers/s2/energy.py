@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 from scipy.integrate import solve_ivp
 
+from tendonlab.arguments import positive, whole
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.constants import Constants
-from tendonlab.procedures.check import positive, whole
 
 
 def free_swing(

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from tendonlab import _core
+from tendonlab.arguments import positive
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2.constants import BRANCHES
 from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.estimate import Estimate, from_jacobian
 from tendonlab.procedures import split
-from tendonlab.procedures.check import positive
 
 LOWEST_FORCE = 200.0  # N, below which the fibre of the cable is not linear
 REST = 1e-3  # rad/s, below which a joint velocity has no sense

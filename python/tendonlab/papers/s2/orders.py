@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from tendonlab.arguments import samples, whole, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import samples, whole, within
 
 
 def order_spectrum(turns: ArrayLike, values: ArrayLike, *, highest: float = 4.0, num_orders: int = 400) -> pd.Series:

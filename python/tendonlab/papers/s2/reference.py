@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from tendonlab.arguments import positive, samples, within
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2.equations import Array
-from tendonlab.procedures.check import positive, samples, within
 
 
 @dataclass(frozen=True)

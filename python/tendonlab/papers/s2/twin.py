@@ -14,13 +14,13 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import within
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.cable import Spring
 from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.reference import Reference
-from tendonlab.procedures.check import within
 
 Sense = Literal["instantaneous", "hold", "reference", "smooth"]
 SENSES: tuple[Sense, ...] = ("instantaneous", "hold", "reference", "smooth")

@@ -12,12 +12,11 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from tendonlab.data import Dataset
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.papers.s3.fit import fit_gradient
 from tendonlab.papers.s3.groups import Record, run_chain, to_dataset
 from tendonlab.papers.s3.rig import FrictionParameters
 from tendonlab.papers.s3.trajectories import Trajectory
-from tendonlab.simulation.catalog import nearest
 
 SAMPLE_RATE = 100.0  # Hz: what happens takes tenths of a second
 DURATION = 12.0  # s a run
@@ -60,7 +59,7 @@ def withheld(case: str, *, seed: int = 1) -> Withheld:
 
     Raises ParameterError for another name."""
     if case not in _CASES:
-        raise ParameterError(f"case = {case!r}: {nearest(case, list(_CASES))}")
+        raise ParameterError(f"case = {case!r}: {expected_one_of(case, _CASES)}")
     return _CASES[case](seed)
 
 

@@ -13,11 +13,11 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import least_squares, minimize
 
+from tendonlab.arguments import whole
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.compiled import NAMES, CompiledRecord
 from tendonlab.papers.s3.groups import Record
 from tendonlab.papers.s3.rig import FrictionParameters, paper_parameters
-from tendonlab.procedures.check import whole
 
 WEAK_CHANGE, WEAK_RISE = 0.2, 0.05  # a parameter is weak if this change of it raises the error by less than this share
 

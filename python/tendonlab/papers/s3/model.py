@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tendonlab.arguments import samples, within
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.rig import FrictionParameters, Rig, assumed_rig
 from tendonlab.papers.s3.shapes import BumpShape
 from tendonlab.papers.s3.statics import sheaths
-from tendonlab.procedures.check import samples, within
 from tendonlab.procedures.sheath_shape import Shape
 
 if TYPE_CHECKING:

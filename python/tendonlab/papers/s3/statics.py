@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.errors import ParameterError
+from tendonlab.arguments import within
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.papers.s3.shapes import BumpShape
-from tendonlab.procedures.check import within
 from tendonlab.procedures.sheath_shape import Shape
-from tendonlab.simulation.catalog import nearest
 
 PROFILES = ("decaying", "uniform")
 
@@ -85,7 +84,9 @@ def sheaths(
 ) -> _core.Sheaths:
     """The compiled pair in sheaths of `shape`; see TransmissionCoefficients.of."""
     if pretension_profile not in PROFILES:
-        raise ParameterError(f"pretension_profile = {pretension_profile!r}: {nearest(pretension_profile, PROFILES)}")
+        raise ParameterError(
+            f"pretension_profile = {pretension_profile!r}: {expected_one_of(pretension_profile, PROFILES)}"
+        )
     along = shape.shape() if isinstance(shape, BumpShape) else shape
     return _core.Sheaths(
         arc_length=along.arc_length.tolist(), turning=along.turning.tolist(), pretension=T_s, input_radius=r_in,

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import choice, positive
 from tendonlab.papers.s4.constants import RESOLUTION, contact, design, identified
 from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.rig import NOISE, Case, measured, run_rig
 from tendonlab.papers.s4.twin import TENSIONS
-from tendonlab.procedures.check import choice, positive
 
 SAMPLE_STEP = 10  # every tenth sample of 1 kHz: 100 Hz
 SOFT_START, EASE = 0.5, 2  # s: what is differentiated must not jump at the start of a record

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from tendonlab.arguments import positive, samples
 from tendonlab.errors import ParameterError
 from tendonlab.procedures import reversal_mask
-from tendonlab.procedures.check import positive, samples
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from tendonlab.procedures.check import positive, samples
+from tendonlab.arguments import positive, samples
 
 
 def synchronous_error(run: pd.DataFrame) -> pd.Series:

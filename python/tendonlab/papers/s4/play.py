@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from tendonlab.arguments import positive, samples, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import positive, samples, within
 
 
 def capstan_play(T_in: np.ndarray, *, T_0: float, mu: float, wrap: float) -> np.ndarray:

@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.papers.s4.constants import RESOLUTION, Joint, Mechanism, contact, design, identified, joint
 from tendonlab.papers.s4.drive import Drive, printed_drive
 from tendonlab.papers.s4.twin import TENSIONS, CcsrmModel
-from tendonlab.simulation.catalog import nearest
 
 NOISE = 0.2  # N, sd of a tension sensor [assumed]
 SAMPLE_RATE, DURATION, WINDOW = 1000.0, 12.0, 4.0  # Hz, s, s: what comes before the window is start-up
@@ -72,7 +71,7 @@ def case(name: str) -> Case:
     """One of `cases`. Raises ParameterError for an unknown name."""
     known = cases()
     if name not in known:
-        raise ParameterError(f"case = {name!r}: {nearest(name, list(known))}")
+        raise ParameterError(f"case = {name!r}: {expected_one_of(name, known)}")
     return known[name]
 
 

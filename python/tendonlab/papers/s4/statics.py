@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tendonlab.arguments import whole, within
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s4.constants import Mechanism
-from tendonlab.procedures.check import whole, within
 
 Array = Any  # a number or an array of numbers: the closed forms take either
 

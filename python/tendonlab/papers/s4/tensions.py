@@ -9,14 +9,13 @@ from pathlib import Path
 
 import pandas as pd
 
+from tendonlab.arguments import positive
 from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.identification.identify import identify
 from tendonlab.identification.result import Identification
 from tendonlab.papers.s4.rig import NOISE
 from tendonlab.papers.s4.twin import TENSIONS
-from tendonlab.procedures.check import positive
-from tendonlab.simulation.catalog import nearest
 from tendonlab.simulation.system import System
 
 ANGLES = {"theta2": "driver_angle", "theta1": "joint_angle"}
@@ -49,7 +48,7 @@ def fit_tensions(
     ):
         for name in names:
             if name not in known:
-                raise ParameterError(f"{of}: {name!r}; {nearest(name, known)}")
+                raise ParameterError(f"{of}: {name!r}; {expected_one_of(name, known)}")
     outputs = {name: f"tension_{name[1:]}" for name in tensions}
     return identify(_dataset(read, start, free, outputs, positive("noise", noise, "N"), smooth=smooth), progress=False)
 

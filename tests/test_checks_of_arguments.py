@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tendonlab import procedures
+from tendonlab.arguments import reals, samples, within
 from tendonlab.errors import ParameterError
-from tendonlab.procedures.check import reals, samples, within
 from tendonlab.seed import generator
 
 TIME = np.arange(0.0, 1.0, 0.01)

@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.optimize import linear_sum_assignment
 
-from tendonlab.procedures.check import along, interval, positive, times, within
+from tendonlab.arguments import along, interval, positive, times, within
 
 MISMATCH = 1e6  # cost of pairing opposite jumps, in squared lengths of the record: never worth it
 

@@ -1,4 +1,4 @@
-"""Checks of what a procedure is given: each names the argument, its value and what was expected."""
+"""Checks of arguments: each message names the argument, its value and what was expected."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import nearest
+from tendonlab.errors import ParameterError, expected_one_of
 
 JITTER = 0.01  # share of the sampling interval by which intervals may differ and still count as even
 
@@ -115,5 +114,5 @@ def whole(name: str, value: int, lower: int) -> int:
 def choice(name: str, value: str, known: Sequence[str]) -> str:
     """One of the known words."""
     if value not in known:
-        raise ParameterError(f"{name} = {value!r}: {nearest(value, tuple(known))}")
+        raise ParameterError(f"{name} = {value!r}: {expected_one_of(value, known)}")
     return value
