@@ -1,6 +1,7 @@
-"""Reading, checking and fetching datasets: experiments as frames in SI units (FORMATS section 1)."""
+"""Reading, checking and fetching datasets: experiments as frames in SI units."""
 
-from tendonlab.data.dataset import Controller, Dataset, Experiment, NominalParameter, SignalSpec, require_dataset
+from tendonlab.data.dataset import Dataset, require_dataset
 from tendonlab.data.folder import load
+from tendonlab.simulation.records import Controller, Experiment, NominalParameter, SignalSpec
 
 __all__ = ["Controller", "Dataset", "Experiment", "NominalParameter", "SignalSpec", "load", "require_dataset"]

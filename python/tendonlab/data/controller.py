@@ -3,10 +3,10 @@
 import math
 from collections.abc import Mapping
 
-from tendonlab.data.dataset import Controller, SignalSpec
 from tendonlab.data.schema import Table
 from tendonlab.errors import expected_one_of
 from tendonlab.simulation.catalog import SystemInfo
+from tendonlab.simulation.records import Controller, SignalSpec
 
 KEYS = ("kind", "kp", "kd", "measured", "reference", "limit", "derivative_on", "sample_time", "disturbance")
 

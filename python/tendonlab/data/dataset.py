@@ -2,93 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from tendonlab.errors import DatasetError, ParameterError, expected_one_of
+from tendonlab.simulation.records import Controller, Experiment, NominalParameter, SignalSpec
+from tendonlab.simulation.system import System
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.axes import Axes
-
-    from tendonlab.simulation.system import System
-
-
-@dataclass(frozen=True)
-class NominalParameter:
-    """A simulator's value, SI; `sd` None: the library's default prior, 0: known exactly and never fitted, inf: nothing
-    is known beforehand."""
-
-    value: float
-    sd: float | None = None
-    lower: float = -math.inf
-    upper: float = math.inf
-
-
-@dataclass(frozen=True)
-class Controller:
-    """How the rig closed its loop: "pd", u = kp (reference - y) + kd d/dt (reference - y), or "cascade",
-    u = kd (kp (reference - y) - dy/dt); y is the signal `measured`. |u| <= `limit`; `disturbance` is added after it."""
-
-    kind: str
-    kp: float
-    kd: float
-    measured: str
-    reference: str
-    limit: float = math.inf
-    derivative_on: str = "error"
-    sample_time: float = 0.0
-    disturbance: str | None = None
-
-
-@dataclass(frozen=True)
-class SignalSpec:
-    """A signal as declared: read from `column`, written there in `unit`, kept here in `si_unit`. `noise_sd` and
-    `resolution` are in `si_unit`. `role`: "input", "output", "reference", "disturbance" or "covariate"."""
-
-    name: str
-    column: str
-    unit: str
-    role: str
-    hold: bool
-    noise_sd: float | None = None
-    resolution: float | None = None
-    si_unit: str = "1"
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)  # frames have no plain equality
-class Experiment:
-    """One record. `data` is indexed by time "t", s, with one float column a signal, SI; outputs may hold NaN.
-
-    `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
-    known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats;
-    `holds`: whether a signal is held between its samples."""
-
-    name: str
-    data: pd.DataFrame = field(repr=False)
-    split: str = "train"
-    repeat: str | None = None
-    start: float | None = None
-    conditions: dict[str, float] = field(default_factory=dict)
-    add: dict[str, float] = field(default_factory=dict)
-    initial: dict[str, float] = field(default_factory=dict)
-    holds: dict[str, bool] = field(default_factory=dict, repr=False)
-
-    @property
-    def time(self) -> np.ndarray:
-        """Time of each sample, s, shape (n,)."""
-        return self.data.index.to_numpy(dtype=float)
-
-    @property
-    def duration(self) -> float:
-        """From the first sample to the last, s."""
-        return float(self.time[-1] - self.time[0])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # frames have no plain equality
@@ -147,9 +72,13 @@ class Dataset:
 
     def system(self) -> System:
         """The simulator that the dataset describes, with its nominal parameters."""
-        from tendonlab.simulation.system import System  # the system knows datasets; the other way round only here
-
-        return System.from_dataset(self)
+        return System(
+            kind=self.kind,
+            parameters={name: parameter.value for name, parameter in self.parameters.items()},
+            effects=self.nominal_effects,
+            axis=self.axis,
+            controller=self.controller,
+        )
 
     def plot(self, ax: Axes | None = None, *, signal: str | None = None) -> Axes:
         """Draw `signal` (the first output) of every experiment against time on `ax`, or on the current axes.

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tendonlab.data.conditions import read_conditions
-from tendonlab.data.dataset import Experiment, NominalParameter, SignalSpec
 from tendonlab.data.parameters import find_parameter, require_within
 from tendonlab.data.read import Columns, MissingColumnError, read_columns
 from tendonlab.data.schema import Table
@@ -18,6 +17,7 @@ from tendonlab.data.split import choose_test
 from tendonlab.data.units import convert, require_dimension
 from tendonlab.errors import DatasetError, expected_one_of
 from tendonlab.simulation.catalog import SystemInfo
+from tendonlab.simulation.records import Experiment, NominalParameter, SignalSpec
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 
 from tendonlab.data.controller import check_controller, read_controller
-from tendonlab.data.dataset import Controller, Dataset, Experiment, SignalSpec
+from tendonlab.data.dataset import Dataset
 from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
 from tendonlab.data.missing_inputs import absent_inputs
 from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
@@ -14,6 +14,7 @@ from tendonlab.data.schema import FILE, read_toml
 from tendonlab.data.signals import read_signals
 from tendonlab.errors import DatasetError, nearest_name
 from tendonlab.simulation import catalog
+from tendonlab.simulation.records import Controller, Experiment, SignalSpec
 
 
 def load(path: str | PathLike[str]) -> Dataset:

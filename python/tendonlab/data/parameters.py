@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterable, Mapping
 
-from tendonlab.data.dataset import Experiment, NominalParameter
 from tendonlab.data.schema import Table
 from tendonlab.errors import expected_one_of
 from tendonlab.simulation.catalog import Parameter, SystemInfo, kinds, system_info
+from tendonlab.simulation.records import Experiment, NominalParameter
 
 
 def read_system(top: Table) -> tuple[SystemInfo, str]:

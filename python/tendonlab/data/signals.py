@@ -1,10 +1,10 @@
 """The [signals] tables: role, unit and holding of each signal."""
 
-from tendonlab.data.dataset import Controller, SignalSpec
 from tendonlab.data.schema import Table
 from tendonlab.data.units import COMMAND_UNITS, base_unit, convert_difference, require_dimension, same_dimension
 from tendonlab.errors import DatasetError, nearest_name
 from tendonlab.simulation.catalog import Signal, SystemInfo, unit
+from tendonlab.simulation.records import Controller, SignalSpec
 
 KEYS = ("column", "unit", "hold", "noise_sd", "resolution")
 

@@ -11,7 +11,8 @@ from tendonlab import _core
 from tendonlab.data import Dataset, Experiment
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.priors import Scale, scales
-from tendonlab.simulation.prepare import Prepared, Replay, choose, prepare
+from tendonlab.fitting.replay import choose_replay
+from tendonlab.simulation.prepare import Prepared, Replay, prepare
 from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
@@ -102,7 +103,7 @@ class Case:
 def make_case(dataset: Dataset, system: System | None = None) -> Case:
     """Prepare every experiment of `dataset` for the simulator (the dataset's own unless given)."""
     system = dataset.system() if system is None else system
-    replay = choose(dataset, system)
+    replay = choose_replay(dataset, system)
     prepared = tuple(prepare(e, system, replay) for e in dataset.experiments)
     noise = np.array([_noise(dataset, prepared, c) for c in range(len(system.info.outputs))])
     found = scales(system, prepared)

@@ -17,11 +17,12 @@ from tendonlab.data import require_dataset
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting import priors
 from tendonlab.fitting.informed import hold
+from tendonlab.fitting.replay import choose_replay
 from tendonlab.fitting.uncertainty import uncertainty
 from tendonlab.identification.result import Identification, Problem
 from tendonlab.seed import generator
 from tendonlab.simulation.catalog import unit
-from tendonlab.simulation.prepare import Prepared, choose, prepare
+from tendonlab.simulation.prepare import Prepared, prepare
 from tendonlab.simulation.signals import white_noise_sd
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def identify(
     if not chosen:
         raise DatasetError(f"{dataset.name}: no training experiment; expected at least one with split = train")
     base = dataset.system() if system is None else system
-    replay = choose(dataset, base)
+    replay = choose_replay(dataset, base)
     ready = [prepare(e, base, replay) for e in chosen]
     noise = noise_sd(dataset, base, ready)
     problem = pose(dataset, base, chosen, ready, effects=effects, noise=noise, tolerance=tolerance)

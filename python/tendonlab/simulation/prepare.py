@@ -11,11 +11,12 @@ import pandas as pd
 from tendonlab import _core
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.simulation.catalog import unit
+from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.signals import hold, linear, motion_at_start, scales_of, smooth, smoothed
 from tendonlab.simulation.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from tendonlab.data import Controller, Dataset, Experiment
+    from tendonlab.simulation.records import Controller
     from tendonlab.simulation.system import System
 
 KINDS = ("auto", "controller", "free")  # that `simulate` takes: an injection needs the gains of a dataset
@@ -59,25 +60,6 @@ class Prepared:
         return np.array([start[of][axis] for of, axis in self.initial])
 
 
-def choose(dataset: Dataset, system: System) -> Replay:
-    """Free run with the known controller; else injection at a bandwidth half of the one that holds 95 % of the measured
-    motion's power (DIAGNOSIS: the same for every model); else, without a measured motor, the logged command alone."""
-    controller = dataset.controller
-    if controller is not None:
-        return Replay("controller", controller.kp, controller.kd, controller.measured)
-    first = next((s.name for s in system.info.outputs if s.axis == 0), None)
-    command = system.info.inputs[0].name if system.info.commanded else None  # another input may stand in for it
-    if first is None or first not in dataset.outputs or command not in dataset.inputs:
-        return Replay("free")
-    _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
-    moved = [(e.time, e.data[first].to_numpy(dtype=float)) for e in dataset.train if first in e.data.columns]
-    rates = [2 * np.pi * _frequency_below(time, values) for time, values in moved if np.isfinite(values).any()]
-    if not rates:
-        return Replay("free")
-    omega = 0.5 * float(np.median(rates))
-    return Replay("injection", float(inertia * omega**2), float(1.4 * inertia * omega), first)
-
-
 def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
     """The experiment for the core: its inputs, its loop and an initial state estimated from the first samples.
 
@@ -108,8 +90,6 @@ def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
 def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
     """The experiment, or one made of a frame. Raises ParameterError for anything else, such as a name, DatasetError for
     a frame whose time is a column."""
-    from tendonlab.data import Experiment
-
     if isinstance(given, Experiment):
         return given
     if not isinstance(given, pd.DataFrame):
@@ -305,15 +285,3 @@ def _initial_state(
 
 def _velocity_names(angles: list[str]) -> list[str]:
     return [name.removesuffix("_angle") + "_velocity" for name in angles]
-
-
-def _frequency_below(time: np.ndarray, values: np.ndarray, share: float = 0.95) -> float:
-    """Frequency, Hz, below which `share` of the power of the moving part of a signal lies."""
-    kept = np.isfinite(values)
-    steady = np.linspace(time[0], time[-1], len(time))
-    centred = np.interp(steady, time[kept], values[kept])
-    centred = (centred - centred.mean()) * np.hanning(len(centred))
-    power = np.abs(np.fft.rfft(centred)) ** 2
-    total = np.cumsum(power[1:])
-    k = int(np.searchsorted(total, share * total[-1])) + 1
-    return float(k / (time[-1] - time[0]))

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from tqdm import tqdm
 
-from tendonlab.data import Experiment
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.prepare import as_experiment
+from tendonlab.simulation.records import Experiment
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,7 +14,7 @@ from tendonlab.simulation.catalog import AXES, LEVEL, MEMORY, SystemInfo, parame
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tendonlab.data import Controller, Dataset, Experiment
+    from tendonlab.simulation.records import Controller, Experiment
     from tendonlab.simulation.trajectory import Trajectory
 
 
@@ -48,18 +48,6 @@ class System:
                 raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
         for name in known:
             self._require_within(name)
-
-    @classmethod
-    def from_dataset(cls, dataset: Dataset) -> System:
-        """The nominal simulator of a dataset."""
-        values = {name: p.value for name, p in dataset.parameters.items()}
-        return cls(
-            kind=dataset.kind,
-            parameters=_with_defaults(system_info(dataset.kind), dataset.nominal_effects, values),
-            effects=tuple(dataset.nominal_effects),
-            axis=dataset.axis,
-            controller=dataset.controller,
-        )
 
     @property
     def info(self) -> SystemInfo:
@@ -175,17 +163,3 @@ class System:
         return all(
             self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0) == 0.0 for p in rows if p.amplitude
         )
-
-
-def _with_defaults(info: SystemInfo, effects: tuple[str, ...], values: dict[str, float]) -> dict[str, float]:
-    """Values as given, and those that a dataset may leave out: no gravity, a torque constant of one."""
-    full = dict(values)
-    for p in info.parameters:
-        if p.effect is None and p.name not in full and p.name in ("gravity_torque", "torque_constant"):
-            full[p.name] = p.typical
-    for name in effects:
-        for full_name in info.effect(name).parameters:
-            row = info.parameter(full_name)
-            if full_name not in full and row.purpose not in ("shape", "condition"):
-                full[full_name] = row.typical if row.purpose == "share" else 0.0
-    return full
