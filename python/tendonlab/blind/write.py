@@ -70,7 +70,7 @@ def write_dataset(rig: Rig, run: Run, folder: Path, *, name: str, description: s
 
 
 def dataset_toml(rig: Rig, signals: Sequence[str], *, name: str, description: str) -> str:
-    """Text of dataset.toml, FORMATS section 1."""
+    """Text of dataset.toml, as docs/datasets.md describes it."""
     lines = [
         'format      = "tendonlab-dataset/1"',
         f"name        = {_toml(name)}",

@@ -1,4 +1,4 @@
-"""What is easily mistaken for what, and the motion or measurement that tells them apart (DIAGNOSIS section 4)."""
+"""What is easily mistaken for what, and the motion or measurement that tells them apart."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def diagnose(
 
     `library`: "default", every effect that the system takes, or names as "joint:stribeck". `seed`: the bootstrap's.
     Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect or a
-    `seed` that is no whole number. Ctrl-C stops it. Source: DIAGNOSIS section 2."""
+    `seed` that is no whole number. Ctrl-C stops it. Source: docs/method.md."""
     require_dataset(dataset)
     began, seed = time.monotonic(), checked(seed)
     names = _library(dataset, library)

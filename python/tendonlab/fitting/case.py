@@ -18,7 +18,7 @@ from tendonlab.simulation.system import System
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
-NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach (DIAGNOSIS section 8)
+NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The noise floor: what repeats of an experiment do not repeat (DIAGNOSIS section 2, steps 3 and 4).
+"""The noise floor: what repeats of an experiment do not repeat (docs/method.md).
 
 Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
 explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats

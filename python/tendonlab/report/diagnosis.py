@@ -174,7 +174,7 @@ class Diagnosis:
         return sentence(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The content of report.json (FORMATS section 2): plain types, None in place of NaN."""
+        """The content of report.json (docs/datasets.md): plain types, None in place of NaN."""
         from tendonlab.report.sentence import version
 
         head = {"format": "tendonlab-diagnosis/1", "tendonlab": version()}

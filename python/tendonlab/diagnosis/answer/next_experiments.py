@@ -1,4 +1,4 @@
-"""What to measure next: the motion in which the leading explanations differ most (DIAGNOSIS section 4)."""
+"""What to measure next: the motion in which the leading explanations differ most (docs/method.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One more effect: screen all candidates, refit the hopeful, say which is established (DIAGNOSIS section 2)."""
+"""One more effect: screen all candidates, refit the hopeful, say which is established (docs/method.md)."""
 
 from __future__ import annotations
 

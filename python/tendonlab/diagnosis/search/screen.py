@@ -1,4 +1,4 @@
-"""Which effects could explain the gap at all: the secant score of each candidate (DIAGNOSIS section 2, step 5)."""
+"""Which effects could explain the gap at all: the secant score of each candidate (docs/method.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which effects: added one at a time, then each judged again beside the others (DIAGNOSIS section 2, step 9)."""
+"""Which effects: added one at a time, then each judged again beside the others (docs/method.md)."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def write_rig(
     duration: float = 6.0,
     seed: int = 0,
 ) -> Path:
-    """Record six motions of the twin `of` from rest into a new `folder` as a dataset (FORMATS section 1) that `tl.load`
+    """Record six motions of the twin `of` from rest into a new `folder` as a dataset that `tl.load`
     reads, whose simulator is `believed`; returns the folder. Same seed, same noise.
 
     `system`: "ccsrm", which simulates joint 1, or "ccsrm_tensions", which takes its angle as read and leaves the
