@@ -12,7 +12,7 @@ from tendonlab.simulation.system import System
 
 def choose_replay(dataset: Dataset, system: System) -> Replay:
     """Free run with the known controller; else injection at a bandwidth half of the one that holds 95 % of the measured
-    motion's power (DIAGNOSIS: the same for every model); else, without a measured motor, the logged command alone."""
+    motion's power (the same for every model); else, without a measured motor, the logged command alone."""
     controller = dataset.controller
     if controller is not None:
         return Replay("controller", controller.kp, controller.kd, controller.measured)
