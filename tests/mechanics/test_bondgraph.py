@@ -110,9 +110,9 @@ def test_strokes_stand_where_the_effort_arrives() -> None:
 @pytest.mark.parametrize(
     ("elements", "chains", "told"),
     [
-        ([*CART, One(name="v")], CART_CHAINS, "element 'v': used twice"),
+        ([*CART, One(name="v")], CART_CHAINS, "duplicate element name 'v'"),
         (CART, [*CART_CHAINS, ("v", "wall")], "no element 'wall'"),
-        (CART, [*CART_CHAINS, ("v", "mass")], "one of them stands twice"),
+        (CART, [*CART_CHAINS, ("v", "mass")], "duplicate bond"),
         ([*CART, TF(name="gear", ratio=2.0)], [*CART_CHAINS, ("v", "gear")], "TF gear: 1 bonds; expected 2"),
         (CART, [*CART_CHAINS[1:], ("mass", "v")], "I mass: its bond leaves it"),
         ([*CART, MTF(name="m", ratio=np.cos, of="q"), R(name="r", effort=1.0)], [*CART_CHAINS, ("v", "m", "r")],

@@ -48,7 +48,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     scoring = _verb(verbs, "score", _score, "open the truth and compare")
     scoring.add_argument("sealed", type=Path, metavar="SEALED")
     scoring.add_argument("reports", type=Path, metavar="REPORTS")
-    scoring.add_argument("--csv", type=Path, help="write one row a case here")
+    scoring.add_argument("--csv", type=Path, help="write one row per case here")
     scoring.add_argument("--json", type=Path, help="write summary and cases here")
 
 

@@ -20,7 +20,7 @@ HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """`cases`: one row a case, indexed by its id. `summary`: shares over all. `verdicts`: truth by verdict, counts.
+    """`cases`: one row per case, indexed by its id. `summary`: shares over all. `verdicts`: truth by verdict, counts.
 
     `strengths`: shares by gap/noise. `effects`: shares by true effect.
     """

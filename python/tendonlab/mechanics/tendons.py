@@ -1,7 +1,7 @@
 """Coupled tendon transmissions: how motion and tension travel from the motors over idle pulleys to the joints (S1).
 
 Transmission i starts at its motor on the base, crosses the joints before its own over idle pulleys and ends on the
-driven pulley of joint i. A tension is the net one of a loop, the difference between both runs, and may be negative."""
+driven pulley of joint i. A tension is the difference between both runs of a loop and may be negative."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def _together(**named: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def back_driven_efficiency(efficiency: ArrayLike) -> np.ndarray:
-    """Efficiency of a reducer that loses as much power driven back as driving, 1: 2 - 1/efficiency; 0 or less: it locks
-    itself. Raises ParameterError for an `efficiency` outside (0, 1]. Source: S1 eq. 10."""
+    """Efficiency when driven back, 2 - 1/efficiency, of a reducer that loses the same power in both directions. At 0 or
+    less the reducer locks. Raises ParameterError for an `efficiency` outside (0, 1]. Source: S1 eq. 10."""
     driving = _floats("efficiency", efficiency)
     if not np.all((driving > 0.0) & (driving <= 1.0)):
         raise ParameterError(f"efficiency = {driving.tolist()}: expected values in (0, 1]")
@@ -114,7 +114,7 @@ class BranchLosses:
     """Tension lost on each branch:  (constant + tension |T|) sgn(S') + viscous S',  T before the loss  (S1 eqs 11, 12).
 
     Arrays (n, n); [i, j]: transmission i on link j ≤ i, link 0 the base. `constant` N, `tension` 1 in [0, 1), `viscous`
-    N·s/m. What is lost on pulleys of the last link stands on link i."""
+    N·s/m. Losses on the pulleys of the last link count on link i."""
 
     constant: np.ndarray
     tension: np.ndarray
@@ -124,7 +124,7 @@ class BranchLosses:
         for name in ("constant", "tension", "viscous"):
             values = _floats(f"{name} loss", getattr(self, name))
             if values.ndim != 2 or values.shape[0] != values.shape[1]:
-                raise ParameterError(f"{name} loss of shape {values.shape}: expected (n, n), a row a transmission")
+                raise ParameterError(f"{name} loss of shape {values.shape}: expected (n, n), one row per transmission")
             bound = 1.0 if name == "tension" else np.inf
             used = values[np.tril_indices(len(values))]
             if not np.all((used >= 0) & (used < bound)):
@@ -219,8 +219,8 @@ class TendonTransmission:
 
     `radius` (n, n), m: signed, lower triangular; [i, j]: of transmission i at joint j, positive where a positive joint
     angle takes up its cable; the diagonal is pulley radius times reducer ratio, not 0. `motor_radius` (n,), m. `losses`
-    of the branches; `reducers` on the driven pulleys and `motor_reducers` at the motors (their ratio stands in
-    `motor_radius`), None where there is none. `at_rest`: which of its values the set-valued law of a reducer takes at
+    of the branches; `reducers` on the driven pulleys and `motor_reducers` at the motors (`motor_radius` contains
+    their ratio), None where there is none. `at_rest`: which of its values the set-valued law of a reducer takes at
     rest. Raises ParameterError. Source: S1 secs II, III."""
 
     radius: np.ndarray
@@ -319,7 +319,7 @@ class TendonTransmission:
     def _matching(self, name: str, values: ArrayLike) -> np.ndarray:
         array = _floats(name, values)
         if array.ndim < 1 or array.shape[-1] != self.num_joints:
-            raise ParameterError(f"{name} of shape {array.shape}: expected (…, {self.num_joints}), a column a joint")
+            raise ParameterError(f"{name} of shape {array.shape}: expected (…, {self.num_joints}), joint by joint")
         if not np.all(np.isfinite(array)):
             raise ParameterError(f"{name} = {array[~np.isfinite(array)][0]}: expected finite numbers")
         return array

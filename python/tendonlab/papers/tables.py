@@ -1,4 +1,4 @@
-"""The papers' tables, and what was reconstructed beside them, as the package carries them."""
+"""The tables of the papers, and reconstructed values that they lack, as the package carries them."""
 
 from __future__ import annotations
 

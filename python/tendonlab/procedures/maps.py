@@ -1,4 +1,4 @@
-"""Friction against speed: a point a run, a map of many runs (S0 Figs. 10-18)."""
+"""Friction against speed: one point per run, a map of many runs (S0 Figs. 10-18)."""
 
 from __future__ import annotations
 
@@ -62,12 +62,12 @@ def map_point(time: ArrayLike, position: ArrayLike, torque: ArrayLike, *, segmen
 def friction_map(
     runs: Iterable[MapPoint] | Mapping[str, Iterable[MapPoint]], *, tolerance: float = SAME_SPEED
 ) -> pd.DataFrame:
-    """Runs gathered by speed: a row a configuration and speed, in order of speed.
+    """Runs gathered by speed: one row per configuration and speed, in order of speed.
 
     `runs`: points of one configuration, in any order, or of several by name. Speeds belong together where each differs
     from the next by a share of at most `tolerance`; directions stay apart. Columns: `configuration` ("" where there is
     but one), `speed` and `torque` (means of the runs), `sd` (of the runs' torques about their mean; NaN for a single
-    run), `sd_of_mean` = sd / sqrt(num_runs), `num_runs`. S0 takes 20 runs a point.
+    run), `sd_of_mean` = sd / sqrt(num_runs), `num_runs`. S0 takes 20 runs per point.
 
     Raises ParameterError: no runs, something else among them, `tolerance` not in [0, 1)."""
     within("tolerance", tolerance, 0.0, 1.0, open_upper=True)

@@ -1,7 +1,8 @@
 """From optical markers on a sheath to its arc length, curvature and wrap angle (S3 eq. 4, 5), in plane and space.
 
 An interpolating spline follows every error of its markers, and curvature is a second derivative: more markers make it
-worse, not better. Hence `smoothing`, and `wrap_angle_uncertainty`, which says what marker noise does to the angle."""
+worse, not better. `smoothing` corrects this, and `wrap_angle_uncertainty` estimates what marker noise does to the
+angle."""
 
 from __future__ import annotations
 
@@ -115,7 +116,7 @@ class MarkerSpline:
 
 @dataclass(frozen=True)
 class WrapAngle:
-    """theta, rad, of the markers as they are; `bias` and `sd`, rad: what marker noise adds to it and scatters it by."""
+    """`value`: theta, rad, of the markers as given. `bias`, `sd`: its mean change and spread by marker noise, rad."""
 
     value: float
     bias: float
@@ -130,9 +131,9 @@ def wrap_angle_uncertainty(
     num_resamples: int = 100,
     seed: int | np.random.Generator = 0,
 ) -> WrapAngle:
-    """How sure the wrap angle is, by resampling: the markers are moved by noise of `marker_sd`, m, time and again.
+    """Uncertainty of the wrap angle, by resampling: noise of `marker_sd`, m, moves the markers many times.
 
-    The noise of the markers themselves is in `value` already, so `bias` says what as much noise again would do."""
+    `value` contains the noise of the given markers already; `bias` is the effect of the same amount of noise again."""
     if not isinstance(spline, MarkerSpline):
         raise ParameterError(f"spline = {spline!r}: expected a MarkerSpline")
     positive("marker_sd", marker_sd, "m")

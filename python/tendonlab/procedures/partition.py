@@ -12,10 +12,10 @@ from tendonlab.seed import generator
 def split(
     n: int, *, share: float = 0.6, contiguous: bool = True, seed: int | np.random.Generator = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Indices to train on and indices to validate on, both rising, together 0 … n - 1 once each.
+    """Indices to fit and indices to validate, both increasing; together 0 … n - 1, once each.
 
     The first `share` of the samples trains (`contiguous`), or a random share of them drawn with `seed`. Neighbouring
-    samples of one log resemble each other: a random split then makes validation look better than it is. S2 section IV.
+    samples of a log are alike, so a random split makes the validation look better than it is. S2 section IV.
 
     Raises ParameterError where `n` is below 2, `share` leaves one side empty, or `seed` is none."""
     whole("n", n, 2)

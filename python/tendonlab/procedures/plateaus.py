@@ -1,4 +1,4 @@
-"""Steady averages: one speed and one torque a plateau, with or without gravity (S1 section 5)."""
+"""Steady averages: one speed and one torque per plateau, with or without gravity (S1 section 5)."""
 
 from __future__ import annotations
 

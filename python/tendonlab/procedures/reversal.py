@@ -1,4 +1,4 @@
-"""Where a motion turns round, and what to leave out about it (S4)."""
+"""Reversals of a motion, and the samples near them to leave out (S4)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def reversals(time: ArrayLike, velocity: ArrayLike, *, rest: float = REST) -> np
     """Times, s, at which the velocity changes its sign, by straight lines between samples; the middle of a dwell.
 
     `time`, s, and `velocity`, shapes (n,); uneven sampling is fine. Speeds up to a share `rest` of the greatest count
-    as standing still: a dwell between motions of one sense is no reversal, whatever noise does in it.
+    as standing still: a dwell between motions in one direction is no reversal, even if noise changes the sign there.
 
     Raises ParameterError: unequal lengths, time that runs back, `rest` not in [0, 1)."""
     t = times(time)

@@ -1,4 +1,4 @@
-"""Stretches of a record in which something holds, and the record in fewer samples to look for them."""
+"""Stretches of a record in which a condition holds, and block means of a record to search them quickly."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ def stretches(holds: np.ndarray) -> list[slice]:
 
 
 def blocks(values: np.ndarray, size: int) -> np.ndarray:
-    """Means of `size` samples after another; what is left over at the end does not count."""
+    """Means of consecutive blocks of `size` samples; remaining samples at the end do not count."""
     num = len(values) // size
     return np.asarray(values[: num * size].reshape(num, size).mean(axis=1))
 
 
 def of_samples(stretch: slice, size: int, num_samples: int) -> slice:
-    """The stretch of samples that a stretch of blocks stands for; the last block has what is left over."""
+    """The samples of a stretch of blocks; the last block includes the remaining samples."""
     end = num_samples if stretch.stop == num_samples // size else stretch.stop * size
     return slice(stretch.start * size, end)
 

@@ -26,7 +26,7 @@ class SearchResult:
 
     `values`: the best parameters. `cost`: half the sum of squares of `residual` there. `jacobian`: of the residual by
     the values, shape (residuals, parameters). `hessian_rank`: rank of jacobian' jacobian; less than the number of
-    parameters says that data cannot tell some of them apart. `sd`: of each value for independent noise of the
+    parameters means that the data cannot separate some of them. `sd`: of each value for independent noise of the
     residuals' size; NaN at a bound, infinite where not identified. `at_bound`: values that ended at a bound; they count
     as fixed for the sd of the others. `success`, `message`: whether the best start converged, and how many agree.
     `costs`: where each start (or member of the last generation) ended, infinite where it failed."""
@@ -48,7 +48,7 @@ class SearchResult:
         return plain | {name: getattr(self, name) for name in ("cost", "hessian_rank", "success", "message")}
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Costs of all starts in order: a long flat beginning says that many found the same optimum."""
+        """Costs of all starts in order: a long flat beginning means that many starts reached the same optimum."""
         from matplotlib import pyplot as plt
 
         ax = plt.gca() if ax is None else ax
@@ -69,7 +69,7 @@ def global_search(
     log: Sequence[bool] | None = None,
     progress: bool = False,
 ) -> SearchResult:
-    """Parameters between `lower` and `upper`, shape (p,), that make the sum of squares of `residual(values)` least.
+    """Parameters between `lower` and `upper`, shape (p,), that minimise the sum of squares of `residual(values)`.
 
     "multistart": bounded least squares from `starts` points of a Latin hypercube. "evolution": differential evolution
     with `starts` members, then bounded least squares. `log`, shape (p,): parameters that are searched on a logarithmic
@@ -77,8 +77,8 @@ def global_search(
     best divided by their noise's sd. Same `seed`, same result. Ctrl-C keeps the best start so far.
 
     Raises ParameterError: bounds that are not finite or not in order, unequal shapes, `starts` below 1 (5 for
-    "evolution"), no `seed`, a residual that is no row of numbers, or
-    one of changing length; NumericalError: no start has a finite residual. Source: S0
+    "evolution"), no `seed`, a residual that is no vector of numbers, or
+    whose length changes; NumericalError: no start has a finite residual. Source: S0
     section 5 (at least 60 starts, or differential evolution; the rank of the Hessian)."""
     choice("method", method, METHODS)
     whole("starts", starts, 5 if method == "evolution" else 1)

@@ -24,9 +24,10 @@ def steady_segment(time: ArrayLike, position: ArrayLike, *, tolerance: float | N
     `trim` of its samples at each end.
 
     `time`, s, evenly sampled, and `position`, rad or m: shapes (n,). The acceleration comes from parabolas over 5 % of
-    the record, so noise hardly matters. `tolerance` in rad/s^2 or m/s^2; None allows the greatest speed to change by a
-    tenth over the whole record, and five sd of the acceleration's noise. Rest (below a tenth of the greatest speed) is
-    no steady motion. For records with several speeds see `steady_averages`. S0 section 2.3; the rule is reconstructed.
+    the record, so noise has little influence. `tolerance` in rad/s^2 or m/s^2; None allows the greatest speed to change
+    by a tenth over the whole record, and five sd of the acceleration's noise. Rest (below a tenth of the greatest
+    speed) is no steady motion. For records with several speeds see `steady_averages`. S0 section 2.3; the rule is
+    reconstructed.
 
     Raises ParameterError: fewer than 20 samples, uneven sampling, `tolerance` not above 0, `trim` not in [0, 0.5),
     a position that does not move, or is steady for less than 5 % of the record."""

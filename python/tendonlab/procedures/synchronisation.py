@@ -1,4 +1,4 @@
-"""Jumps of a signal, and by how much they come late (S2: T_shift)."""
+"""Jumps of a signal, and how late they come (S2: T_shift)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def time_shift(
     within_time: float = 0.1,
     longest: float | None = None,
 ) -> pd.DataFrame:
-    """How late each jump of `measured` comes after the like jump of `simulated`; a row a pair, in order of time.
+    """Delay of each jump of `measured` after the matching jump of `simulated`; one row per pair, in order of time.
 
     Columns `simulated_time`, `measured_time` and `shift` = measured - simulated, s; `simulated_jump`, `measured_jump`
     in the unit of the signals. Jumps as in `jumps`; paired are jumps of one sign, one to one, so that the sum of

@@ -1,4 +1,4 @@
-"""Which side of a bond decides its effort: sequential assignment (sources, storages, then resistors)."""
+"""Which end of a bond decides its effort: sequential assignment (sources, storages, then resistors)."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _try(graph: BondGraph, stroke: dict[Bond, str], bond: Bond, end: str) -> dic
 
 
 def _forced(element: Element, graph: BondGraph, stroke: dict[Bond, str]) -> Iterator[tuple[Bond, str]]:
-    """What the constraint of one element says of its other bonds."""
+    """Causality that the constraint of one element forces on its other bonds."""
     bonds = graph.at[element.name]
     near = [b for b in bonds if stroke.get(b) == element.name]
     far = [b for b in bonds if b in stroke and stroke[b] != element.name]

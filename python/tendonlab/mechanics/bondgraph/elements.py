@@ -15,7 +15,7 @@ Law = Callable[[Any], Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Element:
-    """A node of a graph. `label` is what a drawing shows beside its kind, the name unless given."""
+    """A node of a graph. `label`: text of the drawing next to the kind; default: the name."""
 
     name: str
     label: str = ""
@@ -64,7 +64,7 @@ class I(Element):  # noqa: E742 - the field's name
 
 @dataclass(frozen=True, kw_only=True)
 class C(Element):
-    """Spring or capacitor: q' = flow, effort = `effort`(q). A number stands for a stiffness: effort = number * q."""
+    """Spring or capacitor: q' = flow, effort = `effort`(q). A number is a stiffness: effort = number * q."""
 
     effort: float | Law
     kind = "C"
@@ -79,8 +79,8 @@ class C(Element):
 
 @dataclass(frozen=True, kw_only=True)
 class R(Element):
-    """Resistor: effort = `effort`(flow), a number stands for a linear one; where `of` names a position, `effort`(flow,
-    position). `flow` is the inverse, needed where the graph imposes the effort; a linear one has it by itself."""
+    """Resistor: effort = `effort`(flow), a number is a linear resistance; where `of` names a position, `effort`(flow,
+    position). `flow`: the inverse law, needed where the graph imposes the effort; a linear resistor needs none."""
 
     effort: float | Callable[..., Any]
     flow: Callable[..., Any] | None = None
@@ -190,7 +190,7 @@ def _require_positive(name: str, value: float) -> None:
 
 
 def _require_finite(element: Element, name: str, value: float | Callable[..., Any] | None) -> None:
-    """A number must be finite; a law, or an input that comes later, is not looked at."""
+    """Raise ParameterError for a number that is not finite. Laws and named inputs are not checked."""
     if value is not None and not callable(value):
         within(f"{element.kind} {element.name}: {name}", value, -math.inf, math.inf)
 

@@ -1,4 +1,4 @@
-"""From a graph to its right-hand side: efforts and flows are asked of whichever end decides them."""
+"""From a graph to its right-hand side: the end that decides an effort or a flow computes it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Equations:
         return self.graph.inputs
 
     def rates(self, state: Mapping[str, float], inputs: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Rate of every state. `state`, `inputs`: a value a name, SI.
+        """Rate of every state. `state`, `inputs`: one value per name, SI.
 
         Raises ParameterError for a missing or unknown name, a value that is not finite, and for resistors that only a
         loop of equations would decide."""
@@ -180,7 +180,7 @@ class _At:
         return self.flow(other) / ratio if enters else ratio * self.flow(other)
 
     def _junction(self, what: str, element: Element, bond: Bond) -> Any:
-        """What is common is handed on from the bond that decides it, what sums to zero is summed."""
+        """The bond that decides the common variable passes it on; the other variable is summed to zero."""
         others = [b for b in self.of.graph.at[element.name] if b != bond]
         ask = self.effort if what == "effort" else self.flow
         common = isinstance(element, One) == (what == "flow") and isinstance(element, One | Zero)

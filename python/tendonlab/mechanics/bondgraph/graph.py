@@ -27,9 +27,9 @@ class BondGraph:
     def __post_init__(self) -> None:
         twice = [name for name, count in Counter(e.name for e in self.elements).items() if count > 1]
         if twice:
-            raise ParameterError(f"element {twice[0]!r}: used twice; expected one element a name")
+            raise ParameterError(f"duplicate element name {twice[0]!r}")
         if len(set(self.bonds)) < len(self.bonds):
-            raise ParameterError("bonds: one of them stands twice; expected at most one from an element to another")
+            raise ParameterError("bonds: duplicate bond; expected at most one from an element to another")
         for bond in self.bonds:
             for end in (bond.tail, bond.head):
                 if end not in self.by_name:
@@ -38,7 +38,7 @@ class BondGraph:
             self._require_bonds(element)
         for name, junction in self.positions.items():
             if name in self.by_name:
-                raise ParameterError(f"position {name!r}: an element has that name; expected a name of its own")
+                raise ParameterError(f"position {name!r}: an element has that name; expected a different name")
             if not isinstance(self.by_name.get(junction), One):
                 raise ParameterError(f"position {name!r}: {junction!r} is no 1-junction; expected the name of one")
 

@@ -1,4 +1,4 @@
-"""What S0 prints beside what comes out here, number by number."""
+"""Printed numbers of S0 next to the numbers computed here."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _table_8() -> Iterator[Row]:
         yield f"Table 8: {name}, proposed (N·m), set drawn from it", row["proposed"], found[0], 1e-3
         yield f"Table 8: {name}, proposed error (%), set drawn from it", row["proposed_error"], found[1], 0.6
         yield f"Table 8: {name}, proposed error (%), from its columns", row["proposed_error"], own, 0.06
-    last = printed["C25P104GX-D4M"]  # 44 stands there for 44.6
+    last = printed["C25P104GX-D4M"]  # printed as 44, meant is 44.6
     yield "abstract: greatest fall of the error (points)", 44.0, last["lugre_error"] - last["proposed_error"], 1.0
 
 

@@ -34,7 +34,7 @@ def proposed_system(model: Proposed, *, ratio: float) -> System:
 
 
 def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
-    """Twin maps of a transmission under its four loads, beside the static LuGre simulator with the values of S0 Table 6
+    """Twin maps of a transmission under its four loads, and the static LuGre simulator with the values of S0 Table 6
     or 7: the load, that the simulator lacks, is withheld.
 
     Each load is mapped in four passes of five runs a point and both directions; the passes repeat one another, the last

@@ -20,7 +20,7 @@ from tendonlab.procedures import global_search
 # bounds of the search, S0 eq. 11: F_c, F_s (N·m), theta_s (rad/s), F_v (N·m·s/rad), delta, beta, alpha, gamma
 LOWER = np.array([1e-5, 0.0, 3.0, 0.0, -1.0, -1.0, 0.8, -1.0])
 UPPER = np.array([0.1, 0.1, 40.0, 5e-3, 1.5, 4.0, 8.0, 3.0])
-REFERENCE_WEIGHT = 12.0  # of the residual at each reference point beside those of the map; reconstructed
+REFERENCE_WEIGHT = 12.0  # of the residual at each reference point, relative to those of the map; reconstructed
 TORQUE_SCALE = 0.01  # N·m, of residuals
 Model = TypeVar("Model", Lugre, Proposed, Decaying)
 NAMES = tuple(f.name for f in fields(Proposed))

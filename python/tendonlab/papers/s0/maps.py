@@ -22,7 +22,7 @@ def twin_map(
     of: Configuration, *, num_runs: int = NUM_RUNS, both_signs: bool = True, seed: int | np.random.Generator = 0
 ) -> pd.DataFrame:
     """The twin's friction map of a configuration: `speed` rad/s, `torque` N·m (mean of `num_runs` runs), `sd` N·m of
-    one run, `num_runs`; a row a point, in order of speed.
+    one run, `num_runs`; one row per point, in order of speed.
 
     Raises ParameterError for less than one run."""
     speed = np.concatenate([-twin.SPEEDS[::-1], twin.SPEEDS]) if both_signs else twin.SPEEDS

@@ -39,7 +39,7 @@ class TwinParameters:
 
 @cache
 def parameters(transmission: str) -> TwinParameters:
-    """The reconstructed parameters of a transmission; both threadings share them but for the bump."""
+    """The reconstructed parameters of a transmission; both threadings share them except for the bump."""
     rows = table("S0_reconstructed_parameters")
     crossed = transmission.replace("GP", "GX")
     of = rows[(rows["transmission"] == crossed) & (rows["set"] == "twin")].set_index("symbol")["value"]

@@ -29,7 +29,7 @@ class Block:
 
 @dataclass(frozen=True)
 class BlockDiagram:
-    """Blocks in an order in which each stands behind its sources. Raises ParameterError where one does not."""
+    """Blocks in an order in which each follows its sources. Raises ParameterError where there is no such order."""
 
     blocks: tuple[Block, ...]
 

@@ -1,4 +1,4 @@
-"""What S1 states, and what a separate computation of its equations gave, beside what this library computes."""
+"""Facts that S1 states and results of a separate computation of its equations, next to results of this library."""
 
 from __future__ import annotations
 

@@ -28,8 +28,8 @@ NOISY_SPEEDS = tuple(sign * float(v) for sign in (-1, 1) for v in range(1, 7))  
 
 
 def effect_sizes(levels: Sequence[float] = LOAD_LEVELS) -> pd.DataFrame:
-    """RMS torque, N·m, that each effect alone adds at motor 1 in the free motion, a column a level of gravity. Constant
-    and viscous losses do not see the load; those of tension and reducers grow with it."""
+    """RMS torque, N·m, that each effect alone adds at motor 1 in the free motion, one column per level of gravity.
+    Constant and viscous losses do not depend on the load; losses of tension and reducers grow with it."""
     plain, geared = example_device(reducers=False), example_device()
     losses = plain.losses
     none = losses.scaled(constant=0.0, tension=0.0, viscous=0.0)
@@ -51,7 +51,7 @@ def effect_sizes(levels: Sequence[float] = LOAD_LEVELS) -> pd.DataFrame:
 
 
 def strategies(*, model: Model = "eq12", speeds: Sequence[float] = SPEEDS) -> pd.DataFrame:
-    """What both strategies find at each joint of the device without reducers, beside the truth: `constant`, N·m, and
+    """Results of both strategies at each joint of the device without reducers, and the truth: `constant`, N·m, and
     `viscous`, N·m·s/rad; `residual`, N·m at 6 rad/s, is what friction of the other loops adds (S1 eq. 15)."""
     device, rows = example_device(reducers=False), []
     names: tuple[Strategy, ...] = ("S1", "S2")

@@ -89,8 +89,8 @@ class FreeMotion:
 
     @property
     def table(self) -> pd.DataFrame:
-        """RMS torques, N·m, and the reduction, 1, a row a joint. Read `active_share` with it: a reduction alone rewards
-        over-compensation."""
+        """RMS torques, N·m, and the reduction, 1, one row per joint. Read `active_share` with it: a reduction alone
+        rewards over-compensation."""
         rms = {name: np.sqrt(np.mean(np.square(of), axis=0)) for name, of in self._both.items()}
         joints = pd.Index(range(1, len(rms["without"]) + 1), name="joint")
         return pd.DataFrame({**rms, "reduction": 1 - rms["compensated"] / rms["without"]}, index=joints)

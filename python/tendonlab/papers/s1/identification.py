@@ -21,7 +21,7 @@ Form = Literal["exact", "first_order", "printed"]
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What to command to identify one transmission: a row a constant speed. Arrays (samples, n), rad/s."""
+    """Commands that identify one transmission: one row per constant speed. Arrays (samples, n), rad/s."""
 
     joint: int
     strategy: Strategy
@@ -39,7 +39,7 @@ def plan_identification(
 ) -> Plan:
     """Motor and joint speeds that test the transmission of `joint` (counted from 1) at motor `speeds`, rad/s.
 
-    "S1": the other motors stand, so joints behind turn along; "S2": the other joints stand, so their motors follow.
+    "S1": the other motors rest, so joints behind turn along; "S2": the other joints rest, so their motors follow.
     Raises ParameterError unless each speed comes in both directions, over the same joint range. Source: S1 eq. 14."""
     require_joint(transmission, joint)
     values = np.asarray(speeds, dtype=float)
@@ -142,7 +142,7 @@ def residual_error(
         return float(np.abs(both[0][joint - 1]) - np.abs(both[1][joint - 1]))
     if form not in ("first_order", "printed"):
         raise ParameterError(f"form = {form!r}: expected exact, first_order or printed")
-    speeds = np.abs(transmission.kinematics.branches(moving)) if strategy == "S1" else 0.0  # S2: the others stand
+    speeds = np.abs(transmission.kinematics.branches(moving)) if strategy == "S1" else 0.0  # S2: the others rest
     lost = transmission.losses.constant + transmission.losses.viscous * speeds
     return _first_order(transmission, joint, lost, printed=form == "printed")
 

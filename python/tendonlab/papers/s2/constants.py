@@ -1,4 +1,4 @@
-"""Constants of the cable-driven joint: Tables I and II of S2, and what had to be reconstructed beside them."""
+"""Constants of the cable-driven joint: Tables I and II of S2, and reconstructed values that the tables lack."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of S2 and what is expected of its models, recomputed on the twins beside what is printed."""
+"""Tables of S2 and expected results of its models: printed values next to values recomputed on the twins."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def fit_gear_friction(
 ) -> Estimate:
     """alpha, N*m, and beta, s/rad, of tau = alpha arctan(beta omega) by weighted least squares (S2 eq. 12, Fig. 9).
 
-    `speeds`, rad/s, `torque_mean` and `torque_std`, N*m, one entry a set point; `c_m`: viscous friction, N*m*s/rad,
+    `speeds`, rad/s, `torque_mean` and `torque_std`, N*m, one entry per set point; `c_m`: viscous friction, N*m*s/rad,
     that is taken off first. Raises ParameterError for fewer than 3 set points or a spread that is not positive."""
     omega, mean, std = (np.asarray(x, dtype=float) for x in (speeds, torque_mean, torque_std))
     if len(omega) < 3 or not omega.shape == mean.shape == std.shape:

@@ -1,4 +1,4 @@
-"""What S3 prints, or what a separate computation on its twin gave, beside what the library computes."""
+"""Printed numbers of S3 and results of a separate computation on its twin, next to results of this library."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#8c564b", "#7f7f7f", "#bcbd22")
 MODEL, HOLD = "#d55e00", "#f1e3c6"
-SHOWN = 3  # every so many samples of a log: more are not told apart on paper
+SHOWN = 3  # draw every third sample of a log: the eye sees no more
 
 
 def free_bodies(ax: Axes, *, reading: float) -> None:
@@ -90,7 +90,7 @@ def friction_torque(ax: Axes, records: Sequence[Record], labels: Sequence[str]) 
 
 
 def holds(ax: Axes, record: Record, *, speed: float) -> None:
-    """Shades where the drive is slower than `speed`, deg/s, while the output stands still."""
+    """Shades where the drive is slower than `speed`, deg/s, while the output is constant."""
     time, slow = record.log.index.to_numpy(), (record.log["v"].abs() < speed).to_numpy()
     edges = np.flatnonzero(np.diff(np.concatenate(([0], slow.astype(int), [0]))))
     for start, end in zip(edges[::2], edges[1::2], strict=True):

@@ -63,7 +63,7 @@ def fit_nelder_mead(
     """The paper's way, from several starts: the simplex of Nelder and Mead on the logarithms of all five numbers.
 
     The first start is `start` (the paper's p), the others are spread about it by a normal factor of sd `spread` in log,
-    the last of them with a gate as soft as 5/v_thres². `path` has a row a start: where it began and where it ended."""
+    the last of them with a gate as soft as 5/v_thres². `path` has one row per start: its first and its last point."""
     objective, rng = Objective(records), np.random.default_rng(seed)
     first = paper_parameters() if start is None else start
     rows: list[dict[str, float]] = []

@@ -113,7 +113,7 @@ def generate_dataset(
 def law_record(
     record: Record, p: FrictionParameters, *, noise_sd: float = TORQUE_NOISE_SD, seed: int | np.random.Generator = 0
 ) -> Record:
-    """The same input and velocity with an output that obeys S3 eq. 21 exactly, but for noise of `noise_sd`, N·m."""
+    """The same input and velocity with an output that obeys S3 eq. 21 exactly, except for noise of `noise_sd`, N·m."""
     exact = record.predict(p).tau_out
     noisy = exact + np.random.default_rng(seed).normal(0.0, noise_sd, len(exact))
     return Record(**{**vars(record), "log": record.log.assign(tau_out=noisy)})

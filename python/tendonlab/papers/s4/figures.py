@@ -89,7 +89,7 @@ def draw_tensions(ax: Axes, tensions: Tensions) -> Axes:
 
 
 def draw_stiffness(ax: Any, *, mechanism: Mechanism, mu: float, reach: float, speed: float) -> Any:
-    """Fig. 7 on axes in three dimensions: stiffness over angle, degrees, and rate of joint 1, a surface a direction."""
+    """Fig. 7 in three dimensions: stiffness over angle, degrees, and rate of joint 1, one surface per direction."""
     theta = np.linspace(-reach, reach, 41)
     for sign, colour in ((1, ORANGE), (-1, BLUE)):
         x, y = np.meshgrid(np.rad2deg(theta), sign * np.linspace(0.0, speed, 9))

@@ -60,7 +60,7 @@ def _made(kind: str, m: Mechanism, c: Contact, **own: float) -> System:
 
 
 def simulate(of: System, drive: Drive, time: np.ndarray, *, tolerance: float = 1e-7) -> pd.DataFrame:
-    """Run a simulator from rest with joint 2 driven as told; indexed by `time`, s.
+    """Run a simulator from rest with the given motion of joint 2; indexed by `time`, s.
 
     Columns theta2, om2, theta1, om1 (rad, rad/s), the tensions T11 … T23 and contact frictions f11 … f22 (N)."""
     log = pd.DataFrame({"driver_angle": drive.angle(time)}, index=pd.Index(time, name="t"))

@@ -27,7 +27,7 @@ State = Sequence[float]
 
 @dataclass(frozen=True, kw_only=True)
 class CcsrmModel:
-    """Joint 2 is driven, joint 1 follows through two cables; one bristle a contact (S4 eqs 30 to 35).
+    """Joint 2 is driven, joint 1 follows through two cables; one bristle per contact (S4 eqs 30 to 35).
 
     `end_stiffness`, N/m: of the sections between pulleys and links; None: they do not stretch, as the paper has it.
     `signs`: "consistent", or "printed" to see why not."""
