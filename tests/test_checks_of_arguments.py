@@ -17,9 +17,9 @@ SWING = np.sin(6.0 * TIME)
 MARKERS = np.array([[0.0, 0.0], [0.1, 0.01], [0.2, 0.04], [0.3, 0.09]])
 
 
-@pytest.mark.parametrize("value", ["1", None, [1.0], 1j, "one", float("nan")])
+@pytest.mark.parametrize("value", ["1", True, None, [1.0], 1j, "one", float("nan")])
 def test_a_number_is_no_text_and_no_row(value: Any) -> None:
-    with pytest.raises(ParameterError, match=re.escape(f"cutoff = {value}: expected a value in (0, inf) Hz")):
+    with pytest.raises(ParameterError, match=re.escape(f"cutoff = {value!r}: expected a value in (0, inf) Hz")):
         within("cutoff", value, 0.0, np.inf, "Hz", open_lower=True)
 
 
@@ -52,20 +52,20 @@ def test_a_mask_that_hides_nothing_is_no_matter() -> None:
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda: procedures.lowpass(SWING, cutoff="20", sample_rate=100.0), "cutoff = 20"),
+        (lambda: procedures.lowpass(SWING, cutoff="20", sample_rate=100.0), "cutoff = '20'"),
         (lambda: procedures.velocity(TIME, SWING, method=None), "method = None"),
-        (lambda: procedures.jumps(TIME, SWING, threshold="1"), "threshold = 1"),
-        (lambda: procedures.LoadCell(gain="2"), "gain = 2"),
-        (lambda: procedures.MapPoint("1", 0.1, 0.0, 5), "speed = 1"),
+        (lambda: procedures.jumps(TIME, SWING, threshold="1"), "threshold = '1'"),
+        (lambda: procedures.LoadCell(gain="2"), "gain = '2'"),
+        (lambda: procedures.MapPoint("1", 0.1, 0.0, 5), "speed = '1'"),
         (lambda: procedures.MapPoint(1.0, np.inf, 0.0, 5), "torque = inf"),
         (lambda: procedures.MapPoint(1.0, 0.1, 0.0, 0), "num_samples = 0"),
         (lambda: procedures.pretension_from_load_cells("54", 54.0), "reading_in holds"),
         (lambda: procedures.Shape(["a", "b"], [0.0, 1.0]), "arc_length holds"),
-        (lambda: procedures.Shape.even("1", length=1.0), "wrap_angle = 1"),
-        (lambda: procedures.Shape.skewed(1.0, length=1.0, skew="0"), "skew = 0"),
+        (lambda: procedures.Shape.even("1", length=1.0), "wrap_angle = '1'"),
+        (lambda: procedures.Shape.skewed(1.0, length=1.0, skew="0"), "skew = '0'"),
         (lambda: procedures.Shape.even(1.0, length=1.0, num_samples=1.5), "num_samples = 1.5"),
         (lambda: procedures.MarkerSpline("abc"), "points holds"),
-        (lambda: procedures.MarkerSpline(MARKERS, smoothing="1"), "smoothing = 1"),
+        (lambda: procedures.MarkerSpline(MARKERS, smoothing="1"), "smoothing = '1'"),
         (lambda: procedures.MarkerSpline(MARKERS, kind=3), "kind = 3"),
         (lambda: procedures.wrap_angle_uncertainty(MARKERS, marker_sd=1e-3), "expected a MarkerSpline"),
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -88,15 +89,23 @@ def within(
     inside = (lower < number if open_lower else lower <= number) and (number < upper if open_upper else number <= upper)
     if math.isfinite(number) and inside:
         return number
+    shown = value if isinstance(value, Real) else f"{value!r:.60}"
+    bounds = interval_text(lower, upper, unit, open_lower=open_lower, open_upper=open_upper)
+    raise ParameterError(f"{name} = {shown}: expected {bounds}")
+
+
+def interval_text(
+    lower: float, upper: float, unit: str = "", *, open_lower: bool = False, open_upper: bool = False
+) -> str:
+    """ "a value in [0, 1) rad", for a message; a ratio has the unit "1" and shows none."""
     left, right = "(" if open_lower or math.isinf(lower) else "[", ")" if open_upper or math.isinf(upper) else "]"
-    expected = f"a value in {left}{lower:g}, {upper:g}{right} {unit}".rstrip()
-    raise ParameterError(f"{name} = {value}: expected {expected}")
+    return f"a value in {left}{lower:g}, {upper:g}{right} {'' if unit == '1' else unit}".rstrip()
 
 
 def _number(value: object) -> float:
-    """A number as it stands, NaN for anything else: text that looks like one does not compute like one."""
+    """A number as it is given; NaN for anything else, such as True or text that looks like a number."""
     given = np.asarray(value)
-    return float(given) if given.ndim == 0 and given.dtype.kind in "biuf" else math.nan
+    return float(given) if given.ndim == 0 and given.dtype.kind in "iuf" else math.nan
 
 
 def positive(name: str, value: float, unit: str = "") -> float:

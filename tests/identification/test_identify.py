@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 from tendonlab.cli.text import identification_text
-from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
+from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.fitting.priors import LOG_SD
 from tendonlab.identification import identify as output_error

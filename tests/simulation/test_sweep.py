@@ -130,7 +130,7 @@ def test_ctrl_c_before_anything_is_done_is_ctrl_c() -> None:
     ("grid", "told"),
     [
         ({"coulom": [0.1]}, "coulom = 0.1: no parameter of rigid_joint .* did you mean 'coulomb'"),
-        ({"coulomb": [0.1, -0.1]}, r"coulomb = -0.1: expected a value in \[0.0, inf\] N\*m"),
+        ({"coulomb": [0.1, -0.1]}, r"coulomb = -0.1: expected a value in \[0, inf\) N\*m"),
         ({"coulomb": []}, r"coulomb has shape \(0,\): expected a list of values"),
         ({"coulomb": ["low"]}, r"coulomb = \['low'\]: expected a list of numbers"),
         ({"coulomb": [0.1, 0.2, 0.1]}, "coulomb: 0.1 stands there twice"),

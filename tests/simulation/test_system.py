@@ -1,6 +1,8 @@
 """A simulator and what it gives: what is refused and with which words, and the forms in which it is shown."""
 
-from dataclasses import replace
+import copy
+import pickle
+from dataclasses import FrozenInstanceError, replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +11,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import tendonlab as tl
-from tendonlab.data import Controller
+from tendonlab.cli.demo import bundled
+from tendonlab.data import Controller, Experiment
+from tendonlab.simulation.system import require_system
 
 VALUES = {"inertia": 0.02, "gravity_torque": 0.5, "torque_constant": 1.0, "coulomb": 0.05, "viscous": 0.03}
 SIM = tl.System(kind="rigid_joint", parameters=VALUES, effects=("joint:coulomb", "joint:viscous"))
@@ -25,10 +29,10 @@ PUSHED = pd.DataFrame({"motor_torque": 0.4 * np.sin(6.0 * TIME)}, index=pd.Index
         ({"effects": ("joint:stribek",)}, "'joint:stribek' is no effect of rigid_joint; did you mean 'joint:stribeck'"),
         (
             {"effects": ("joint:viscous", "joint:presliding")},
-            "joint:presliding takes over the dry friction of its slot",
+            "joint:presliding shapes dry friction, and none is there: add one of joint:coulomb",
         ),
         ({"effects": ("joint:coulomb",)}, "viscous = 0.03: no parameter of rigid_joint with its effects"),
-        ({"parameters": {**VALUES, "inertia": -1.0}}, r"inertia = -1.0: expected a value in \[1e-12, inf\] kg\*m\^2"),
+        ({"parameters": {**VALUES, "inertia": -1.0}}, r"inertia = -1.0: expected a value in \[1e-12, inf\) kg\*m\^2"),
         ({"parameters": {**VALUES, "inertia": np.nan}}, "inertia = nan: expected a value in"),
         (
             {"parameters": {k: v for k, v in VALUES.items() if k != "coulomb"}},
@@ -45,7 +49,7 @@ def test_a_simulator_that_cannot_be_is_refused(changes: dict[str, object], told:
 @pytest.mark.parametrize(
     ("given", "error", "told"),
     [
-        (PUSHED.reset_index(), tl.DatasetError, "column 't' stands beside the index: expected it as the index"),
+        (PUSHED.reset_index(), tl.DatasetError, "column 't' is not the index: expected a frame indexed by time"),
         (PUSHED.replace(PUSHED.iloc[3, 0], np.nan), tl.DatasetError, "motor_torque = nan at t = 0.03 s"),
         (PUSHED.iloc[:1], tl.ParameterError, "experiment with 1 samples: expected at least 2"),
     ],
@@ -109,3 +113,66 @@ def test_forms_for_a_notebook_are_short_and_escaped() -> None:
     assert repr(SIM) == "System(rigid_joint, rotary, effects: joint:coulomb, joint:viscous)"
     assert "<td>viscous</td><td>0.03</td><td>N*m*s/rad</td>" in SIM._repr_html_()
     assert SIM.to_dict()["parameters"] == VALUES
+
+
+RUN = Experiment(name="run", data=PUSHED, conditions={"gravity_torque": 0.4})
+
+
+@pytest.mark.parametrize(
+    "value", [SIM, SIM.simulate(PUSHED, ports=True), RUN], ids=["system", "trajectory", "experiment"]
+)
+def test_values_pickle_and_copy_to_their_equals(value: Any) -> None:
+    for other in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+        assert other == value
+        assert other is not value
+    assert value != "something else"
+
+
+def test_values_differ_where_one_sample_does() -> None:
+    run, other = SIM.simulate(PUSHED), SIM.simulate(PUSHED)
+    assert run == other
+    other.outputs.iloc[3, 0] += 1e-12
+    assert run != other
+    assert replace(RUN, data=PUSHED * 2.0) != RUN
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(RUN)
+
+
+def test_a_system_cannot_be_changed() -> None:
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        SIM.parameters["coulomb"] = 1.0  # type: ignore[index]
+    with pytest.raises(FrozenInstanceError):
+        SIM.axis = "linear"  # type: ignore[misc]
+    assert hash(SIM) == hash(SIM.with_parameters({"coulomb": 0.05}))
+    assert len({SIM, SIM.with_parameters({"coulomb": 0.06})}) == 2
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: tl.System("two_inertia"), "motor_inertia: missing"),
+        (lambda: tl.System(7), "kind = 7: expected the name of a system"),  # type: ignore[arg-type]
+        (lambda: replace(SIM, effects=None), r"effects = None: expected a list such as \['joint:stribeck'\]"),
+        (lambda: replace(SIM, effects="joint:coulomb"), r"expected a list such as \['joint:coulomb'\]"),
+        (lambda: replace(SIM, parameters=[1.0]), r"parameters = \[1.0\]: expected a mapping"),
+        (lambda: replace(SIM, controller="pd"), "controller = 'pd': expected a Controller or None"),
+        (lambda: SIM.with_parameters({"coulomb": np.inf}), "coulomb = inf: expected a value in"),
+        (lambda: SIM.with_parameters({"coulomb": True}), "coulomb = True: expected a value in"),
+        (lambda: SIM.with_parameters({"coulomb": "0.1"}), "coulomb = '0.1': expected a value in"),
+        (lambda: SIM.simulate(PUSHED, tolerance="x"), r"tolerance = 'x': expected a value in \[1e-14, 0.1\]$"),
+        (lambda: SIM.simulate("run-1"), "experiment is of type str: expected an experiment of a dataset"),
+        (lambda: require_system(RUN), "expected a System, such as dataset.system()"),
+    ],
+)  # fmt: skip
+def test_a_wrong_type_is_a_parameter_error(make: Any, message: str) -> None:
+    with pytest.raises(tl.ParameterError, match=message):
+        make()
+
+
+def test_a_stiffness_that_no_step_resolves_ends_with_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tendonlab.simulation.system.MAX_ATTEMPTS", 1000)
+    rig = tl.load(bundled())
+    stiff = rig.system().with_parameters({"cable_stiffness": 1e15})
+    record = replace(rig.experiments[0], data=rig.experiments[0].data.iloc[:10])
+    with pytest.raises(tl.NumericalError, match=r"after 11000 step attempts; expected to reach t = .* far too stiff"):
+        stiff.simulate(record)

@@ -3,23 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import pandas as pd
 
 from tendonlab import _core
 from tendonlab.errors import DatasetError, ParameterError
-from tendonlab.simulation.catalog import unit
+from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.signals import hold, linear, motion_at_start, scales_of, smooth, smoothed
-from tendonlab.simulation.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import Controller
-    from tendonlab.simulation.system import System
+REPLAYS = ("auto", "controller", "free")  # of `System.simulate`; an injection needs the gains of a dataset
 
-KINDS = ("auto", "controller", "free")  # that `simulate` takes: an injection needs the gains of a dataset
+
+class Simulator(Protocol):
+    """What preparing an experiment needs of a `System`: its tables, its numbers and its controller."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def controller(self) -> Controller | None: ...
+    @property
+    def info(self) -> SystemInfo: ...
+    def values(self) -> list[float]: ...
+    def active(self) -> list[bool]: ...
 
 
 @dataclass(frozen=True)
@@ -60,7 +70,7 @@ class Prepared:
         return np.array([start[of][axis] for of, axis in self.initial])
 
 
-def prepare(experiment: Experiment, system: System, replay: Replay) -> Prepared:
+def prepare(experiment: Experiment, system: Simulator, replay: Replay) -> Prepared:
     """The experiment for the core: its inputs, its loop and an initial state estimated from the first samples.
 
     Raises DatasetError where a signal that the replay needs was not logged, or is no row of numbers in time."""
@@ -93,57 +103,24 @@ def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
     if isinstance(given, Experiment):
         return given
     if not isinstance(given, pd.DataFrame):
-        told = "expected an experiment of a dataset, such as dataset['run-1'], or a frame indexed by time"
-        raise ParameterError(f"experiment is of type {type(given).__name__}: {told}")
+        expected = "an experiment of a dataset, such as dataset['run-1'], or a frame indexed by time"
+        raise ParameterError(f"experiment is of type {type(given).__name__}: expected {expected}")
     if "t" in given.columns:
-        raise DatasetError("column 't' stands beside the index: expected it as the index, as set_index('t') gives it")
+        raise DatasetError("column 't' is not the index: expected a frame indexed by time; use set_index('t')")
     return Experiment(name="given", data=given)
 
 
-def simulate(
-    system: System, experiment: Experiment | pd.DataFrame, *, tolerance: float, ports: bool, replay: str
-) -> Trajectory:
-    """Simulate one experiment; see System.simulate."""
-    if replay not in KINDS:
-        raise ParameterError(f"replay = {replay!r}: expected one of {', '.join(KINDS)}")
-    experiment = as_experiment(experiment)
-    controller = system.controller
-    known = controller is not None and controller.reference in experiment.data.columns
-    if replay == "controller" and not known:
-        raise ParameterError("replay = 'controller': the system knows no controller, or its reference was not logged")
-    chosen = Replay("controller" if known and replay in ("auto", "controller") else "free")
-    system = _there(system, experiment)
-    ready = prepare(experiment, system, chosen)
-    run = _core.simulate(
-        system.kind, system.values(), system.active(), ready.core, [], _core.Settings(
-            tolerance=tolerance, position_scale=ready.position_scale, velocity_scale=ready.velocity_scale, ports=ports)
-    )  # fmt: skip
-    index = pd.Index(experiment.time, name="t")
-    names = [s.name for s in system.info.outputs]
-    frame = pd.DataFrame(run["outputs"].T, index=index, columns=names)
-    return Trajectory(
-        outputs=frame,
-        units={s.name: unit(s.dimension, system.axis) for s in system.info.outputs},
-        ports=_port_frame(run["ports"], system, index) if ports else None,
-        num_attempts=run["attempts"],
-        num_events=run["events"],
-    )
+def choose_loop(experiment: Experiment, controller: Controller | None, replay: str) -> Replay:
+    """The replay that `System.simulate` is asked for; "auto" closes the loop where that is possible."""
+    if replay not in REPLAYS:
+        raise ParameterError(f"replay = {replay!r}: expected one of {', '.join(REPLAYS)}")
+    closes = controller is not None and controller.reference in experiment.data.columns
+    if replay == "controller" and not closes:
+        raise ParameterError("replay = 'controller': the system has no controller, or its reference was not logged")
+    return Replay("controller" if closes and replay != "free" else "free")
 
 
-def _there(system: System, experiment: Experiment) -> System:
-    """The simulator under the conditions of an experiment and with what was added; other names are covariates."""
-    values = {name: value for name, value in experiment.conditions.items() if name in system.parameters}
-    added = {n: system.parameters[n] + more for n, more in experiment.add.items() if n in system.parameters}
-    return system.with_parameters({**added, **values})
-
-
-def _port_frame(ports: np.ndarray, system: System, index: pd.Index) -> pd.DataFrame:
-    seen = ("velocity", "position", "load", "force")
-    columns = pd.MultiIndex.from_product([[p.name for p in system.info.ports], seen], names=["port", "quantity"])
-    return pd.DataFrame(ports.reshape(-1, ports.shape[-1]).T, index=index, columns=columns)
-
-
-def _inputs(experiment: Experiment, system: System, replay: Replay) -> list[_core.Signal]:
+def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_core.Signal]:
     data, time = experiment.data, experiment.time
     signals = []
     for k, given in enumerate(system.info.inputs):
@@ -176,7 +153,7 @@ def _samples(experiment: Experiment, name: str) -> np.ndarray:
     """The samples of a signal, NaN where it was not measured."""
     column = experiment.data[name]
     if column.ndim != 1:
-        raise DatasetError(f"{experiment.name}: {name} stands there {column.shape[1]} times; expected one column")
+        raise DatasetError(f"{experiment.name}: {column.shape[1]} columns are named {name}; expected one")
     if column.dtype.kind not in "biuf":
         raise DatasetError(f"{experiment.name}: {name} is of type {column.dtype}; expected real numbers")
     return np.asarray(column.to_numpy(dtype=float, na_value=np.nan))
@@ -192,15 +169,15 @@ def _finite(experiment: Experiment, name: str) -> np.ndarray:
     return values
 
 
-def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.ndarray) -> _core.Loop:
+def _loop(experiment: Experiment, system: Simulator, replay: Replay, measured: np.ndarray) -> _core.Loop:
     if replay.kind == "free":
         return _core.Loop()
     names = [s.name for s in system.info.outputs]
     if replay.kind == "injection":
         c = names.index(str(replay.output))
         if np.isfinite(measured[c]).sum() < 2:
-            told = "the injection replay needs it in every experiment"
-            raise DatasetError(f"{experiment.name}: {names[c]} has no two measured samples; {told}")
+            reason = "the injection replay needs it in every experiment"
+            raise DatasetError(f"{experiment.name}: {names[c]}: fewer than 2 measured samples; {reason}")
         return _core.Loop(
             kind="injection",
             axis=system.info.outputs[c].axis or 0,
@@ -215,11 +192,11 @@ def _loop(experiment: Experiment, system: System, replay: Replay, measured: np.n
         )
     controller = system.controller
     if controller is None:
-        raise ParameterError("replay 'controller': the system knows no controller")
+        raise ParameterError("replay = 'controller': the system has no controller")
     return _controller_loop(experiment, system, controller)
 
 
-def _controller_loop(experiment: Experiment, system: System, controller: Controller) -> _core.Loop:
+def _controller_loop(experiment: Experiment, system: Simulator, controller: Controller) -> _core.Loop:
     time, held = experiment.time, experiment.holds
     c = [s.name for s in system.info.outputs].index(controller.measured)
     cascade = controller.kind == "cascade"
@@ -246,7 +223,7 @@ def _controller_loop(experiment: Experiment, system: System, controller: Control
 
 
 def _initial_state(
-    experiment: Experiment, system: System, measured: np.ndarray
+    experiment: Experiment, system: Simulator, measured: np.ndarray
 ) -> tuple[list[float], list[float], list[tuple[str, int]], list[float]]:
     """Start of each degree of freedom from its first samples; where it is not measured, from the others as if nothing
     stretched. What was measured or inferred stays a nuisance, what `initial` states is known."""

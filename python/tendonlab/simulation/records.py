@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tendonlab.simulation.equality import same_fields
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -54,9 +56,9 @@ class SignalSpec:
     si_unit: str = "1"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)  # frames have no plain equality
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Experiment:
-    """One record. `data` is indexed by time "t", s, with one float column a signal, SI; outputs may hold NaN.
+    """One record. `data` is indexed by time "t", s, with one float column per signal, SI; outputs may hold NaN.
 
     `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
     known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats;
@@ -80,4 +82,14 @@ class Experiment:
     @property
     def duration(self) -> float:
         """From the first sample to the last, s."""
-        return float(self.time[-1] - self.time[0])
+        return float(self.time[-1] - self.time[0]) if len(self.data) else 0.0
+
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other) if isinstance(other, Experiment) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # its frames can be changed
+
+    def __repr__(self) -> str:
+        signals = ", ".join(map(str, self.data.columns))
+        size = f"{len(self.data)} samples, {self.duration:g} s"
+        return f"Experiment({self.name!r}, {self.split}: {signals}; {size})"

@@ -3,51 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from html import escape
-from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+from tendonlab import _core
+from tendonlab.arguments import choice, interval_text, within
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.simulation.catalog import AXES, LEVEL, MEMORY, SystemInfo, parameter_unit, system_info
+from tendonlab.simulation.frozen import FrozenNumbers
+from tendonlab.simulation.records import Controller
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tendonlab.simulation.records import Controller, Experiment
+    from tendonlab.simulation.records import Experiment
     from tendonlab.simulation.trajectory import Trajectory
 
+MAX_ATTEMPTS, ATTEMPTS_PER_SAMPLE = 1_000_000, 1_000  # of the stepper: beyond them a parameter is far too stiff
 
-@dataclass(frozen=True, kw_only=True)
+
+@dataclass(frozen=True)
 class System:
     """A simulator of one `kind` (see `kinds`) on a "rotary" or "linear" axis. `parameters` holds the value, SI, of each
     parameter of the system and of its `effects` ("joint:stribeck"); `controller` closes its loop in a replay where it
-    is known. It never changes: `with_parameters` and `with_effects` give another one.
+    is known. It never changes: `with_parameters` and `with_effects` give a new one.
 
     Raises ParameterError for an unknown or missing name or a value outside its bounds."""
 
     kind: str
+    _: KW_ONLY
     parameters: Mapping[str, float] = field(default_factory=dict)
     effects: tuple[str, ...] = ()
     axis: str = "rotary"
     controller: Controller | None = None
 
     def __post_init__(self) -> None:
-        if self.axis not in AXES:
-            raise ParameterError(f"axis = {self.axis!r}: expected one of {', '.join(AXES)}")
-        if isinstance(self.effects, str):
-            raise ParameterError(f"effects = {self.effects!r}: expected a list such as [{self.effects!r}]")
+        _check_types(self)
+        object.__setattr__(self, "effects", tuple(self.effects))
         for name in self.effects:
             self._require_company(name)
         known = self._own_names()
-        stated = {p.name: p.typical for p in self.info.parameters if p.purpose == "condition" and p.name in known}
-        object.__setattr__(self, "parameters", {**stated, **self.parameters})
         for name, value in self.parameters.items():
             if name not in known:
                 offer = expected_one_of(name, known)
                 raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
-        for name in known:
-            self._require_within(name)
+        stated = {p.name: p.typical for p in self.info.parameters if p.purpose == "condition" and p.name in known}
+        given = {**stated, **self.parameters}
+        self._require_all(known, given)
+        checked = FrozenNumbers({name: self._within(name, value) for name, value in given.items()})
+        object.__setattr__(self, "parameters", checked)
 
     @property
     def info(self) -> SystemInfo:
@@ -84,7 +89,7 @@ class System:
         return replace(self, parameters=values, effects=tuple(names))
 
     def values(self) -> list[float]:
-        """One value a parameter of the core, in its order; those of effects that are off hold any allowed number."""
+        """One value per parameter of the core, in its order; effects that are off get any allowed number."""
         own = set(self._own_names())
         return [
             float(self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0))
@@ -94,7 +99,7 @@ class System:
         ]
 
     def active(self, *, keep_zero: bool = False) -> list[bool]:
-        """One flag an effect of the core. One whose amplitude is exactly 0 is left out, unless `keep_zero`."""
+        """One flag per effect of the core. An effect whose amplitude is exactly 0 is off, unless `keep_zero`."""
         acts = {name for name in self.effects if keep_zero or not self._vanishes(name)}
         return [e.structural or e.name in acts for e in self.info.effects]
 
@@ -109,13 +114,31 @@ class System:
         """Simulate what `experiment` applied, and give outputs at its instants.
 
         `experiment`: an experiment of a dataset (its conditions fix parameters, its `add` adds to them), or a frame
-        indexed by time, s, with a column an input. `replay`: "controller" (rig and known controller in free run),
+        indexed by time, s, with one column per input. `replay`: "controller" (rig and known controller in free run),
         "free" (logged inputs only) or "auto" (the controller where the simulator knows it and the reference was
         logged). `tolerance`: relative error of a step. `ports`: also what each port sees and does.
         Raises DatasetError for a missing input or one that is no number, NumericalError where the integration fails."""
-        from tendonlab.simulation.prepare import simulate
+        from tendonlab.simulation.prepare import as_experiment, choose_loop, prepare
+        from tendonlab.simulation.trajectory import trajectory_of
 
-        return simulate(self, experiment, tolerance=tolerance, ports=ports, replay=replay)
+        record = as_experiment(experiment)
+        system = self.under(record)
+        ready = prepare(record, system, choose_loop(record, self.controller, replay))
+        settings = _core.Settings(
+            tolerance=within("tolerance", tolerance, 1e-14, 0.1),
+            position_scale=ready.position_scale,
+            velocity_scale=ready.velocity_scale,
+            max_attempts=MAX_ATTEMPTS + ATTEMPTS_PER_SAMPLE * len(record.data),
+            ports=ports,
+        )
+        run = _core.simulate(self.kind, system.values(), system.active(), ready.core, [], settings)
+        return trajectory_of(run, self.info, axis=self.axis, time=record.time)
+
+    def under(self, experiment: Experiment) -> System:
+        """The simulator with the conditions of an experiment and its additions; other names are covariates."""
+        added = {n: self.parameters[n] + more for n, more in experiment.add.items() if n in self.parameters}
+        fixed = {n: value for n, value in experiment.conditions.items() if n in self.parameters}
+        return self.with_parameters({**added, **fixed})
 
     def to_dict(self) -> dict[str, Any]:
         """Kind, axis, effects and parameters as plain types."""
@@ -131,25 +154,26 @@ class System:
         return f"<p>{escape(repr(self))}</p><table><tr><th>parameter</th><th>value</th><th>unit</th></tr>{rows}</table>"
 
     def _require_company(self, name: str) -> None:
-        """Raises where an effect shapes dry friction (Role::memory) and no level beside it gives any."""
+        """Raise where an effect needs another one: a memory of dry friction needs a level of it (Role::memory)."""
         effect = self.info.effect(name)
         levels = [e.name for e in self.info.effects if e.element == effect.element and e.roles & LEVEL]
         if effect.roles & MEMORY and not set(levels) & set(self.effects):
-            told = f"expected one of {', '.join(levels)} beside it"
-            raise ParameterError(f"{name} takes over the dry friction of its slot: {told}")
+            raise ParameterError(f"{name} shapes dry friction, and none is there: add one of {', '.join(levels)}")
         for other in effect.needs:
             if other not in self.effects:
-                raise ParameterError(f"{name} shares parameters with {other}: expected it beside it")
+                raise ParameterError(f"{name} shares parameters with {other}: add {other} too")
 
-    def _require_within(self, name: str) -> None:
-        """Raises where a parameter has no value, or one outside its bounds."""
+    def _require_all(self, names: list[str], given: Mapping[str, float]) -> None:
+        """Raise where one of the parameters `names` has no value and no default."""
+        for row in map(self.info.parameter, names):
+            if row.name not in given and row.purpose != "share":
+                expected = interval_text(row.lower, row.upper, self.unit(row.name))
+                raise ParameterError(f"{row.name}: missing; expected {expected} ({row.meaning})")
+
+    def _within(self, name: str, value: float) -> float:
+        """The value of a parameter. Raises where it is outside the bounds."""
         row = self.info.parameter(name)
-        expected = f"expected a value in [{row.lower}, {row.upper}] {self.unit(name)}"
-        if name not in self.parameters and row.purpose != "share":
-            raise ParameterError(f"{name}: missing; {expected} ({row.meaning})")
-        value = self.parameters.get(name, row.typical)
-        if not isinstance(value, Real) or not row.lower <= value <= row.upper:
-            raise ParameterError(f"{name} = {value!r}: {expected}")
+        return within(name, value, row.lower, row.upper, self.unit(name))
 
     def _own_names(self) -> list[str]:
         """Parameters of the system itself, of what is structural, and of its effects."""
@@ -163,3 +187,24 @@ class System:
         return all(
             self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0) == 0.0 for p in rows if p.amplitude
         )
+
+
+def require_system(given: object) -> System:
+    """The system itself. Raises ParameterError for anything else, such as a dataset."""
+    if not isinstance(given, System):
+        raise ParameterError(f"system = {given!r:.60}: expected a System, such as dataset.system()")
+    return given
+
+
+def _check_types(system: System) -> None:
+    """Raise ParameterError where a field of a system is of the wrong type."""
+    if not isinstance(system.kind, str):
+        raise ParameterError(f"kind = {system.kind!r:.60}: expected the name of a system, such as 'two_inertia'")
+    choice("axis", system.axis, AXES)
+    if not isinstance(system.effects, tuple | list):
+        example = [system.effects] if isinstance(system.effects, str) else ["joint:stribeck"]
+        raise ParameterError(f"effects = {system.effects!r:.60}: expected a list such as {example}")
+    if not isinstance(system.parameters, Mapping):
+        raise ParameterError(f"parameters = {system.parameters!r:.60}: expected a mapping of names to values")
+    if not isinstance(system.controller, Controller | None):
+        raise ParameterError(f"controller = {system.controller!r:.60}: expected a Controller or None")

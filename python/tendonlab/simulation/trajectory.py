@@ -6,15 +6,18 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.errors import ParameterError, expected_one_of
+from tendonlab.simulation.catalog import SystemInfo, unit
+from tendonlab.simulation.equality import same_fields
 
 if TYPE_CHECKING:
+    import numpy as np
     import pandas as pd
     from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
-    """A simulated run; `run["joint_angle"]` is one output. `outputs`: indexed by time "t", s, one column a signal, SI.
+    """A simulated run; `run["joint_angle"]` is one output. `outputs`: by time "t", s, with one column per signal, SI.
 
     `units`: of each output. `ports`: a frame with columns (port, "velocity" | "position" | "load" | "force") where it
     was asked for. `num_attempts`: steps that were tried; `num_events`: reversals, stops and edges that were met."""
@@ -52,6 +55,11 @@ class Trajectory:
         """Time and outputs as lists."""
         return {"t": self.outputs.index.tolist(), **{str(c): self.outputs[c].tolist() for c in self.outputs.columns}}
 
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other) if isinstance(other, Trajectory) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # its frames can be changed
+
     def __repr__(self) -> str:
         time = self.outputs.index
         span = f", {time[0]:g} to {time[-1]:g} s" if len(time) else ""
@@ -59,3 +67,26 @@ class Trajectory:
 
     def _repr_html_(self) -> str:
         return str(self.outputs.describe().to_html())
+
+
+def trajectory_of(run: dict[str, Any], info: SystemInfo, *, axis: str, time: np.ndarray) -> Trajectory:
+    """What the core returned, as frames."""
+    import pandas as pd
+
+    index = pd.Index(time, name="t")
+    units = {s.name: unit(s.dimension, axis) for s in info.outputs}
+    return Trajectory(
+        outputs=pd.DataFrame(run["outputs"].T, index=index, columns=list(units)),
+        units=units,
+        ports=_port_frame(run["ports"], info, index) if "ports" in run else None,
+        num_attempts=run["attempts"],
+        num_events=run["events"],
+    )
+
+
+def _port_frame(ports: np.ndarray, info: SystemInfo, index: pd.Index[float]) -> pd.DataFrame:
+    import pandas as pd
+
+    quantities = [[p.name for p in info.ports], ("velocity", "position", "load", "force")]
+    columns = pd.MultiIndex.from_product(quantities, names=["port", "quantity"])
+    return pd.DataFrame(ports.reshape(-1, ports.shape[-1]).T, index=index, columns=columns)

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tendonlab.data import Dataset, Experiment
-from tendonlab.data.dataset import NominalParameter, SignalSpec
+from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.papers.s3.chain import TORQUE_NOISE_SD, Chain, with_noise
 from tendonlab.papers.s3.model import Prediction, mean_squared_error, predict_log
 from tendonlab.papers.s3.rig import DEGREE, FrictionParameters, Rig, assumed_rig, cable_pretension

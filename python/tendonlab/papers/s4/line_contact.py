@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab import friction, transmission
+from tendonlab._core import friction, transmission
 from tendonlab.papers.s4.constants import Contact
 
 Array = Any  # a number or an array of numbers
