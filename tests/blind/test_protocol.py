@@ -24,7 +24,7 @@ from tendonlab.blind.twin import make_twin
 
 ROOT = Path(__file__).parents[2]
 BUNDLED = ROOT / "data" / "two_inertia"
-README = ROOT / "README.md"
+PAGE = ROOT / "docs" / "blind.md"
 
 
 def read(path: Path) -> dict:
@@ -182,7 +182,7 @@ def test_command_line_scores(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.M
     assert len(pd.read_csv(tmp_path / "score.csv")) == 4
 
 
-def test_flow_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
+def test_flow_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
     """Its commands as written, on cases fewer and shorter than it draws, by a diagnosis that knows the answers."""
 
     def draw_less(seed: int, count: int, out: Path, *, sealed: Path | None, jobs: int) -> Path:
@@ -190,7 +190,7 @@ def test_flow_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cap
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(commands, "draw", draw_less)
-    lines = re.findall(r"^python -m tendonlab\.blind (.*)$", README.read_text(encoding="utf-8"), re.M)
+    lines = re.findall(r"^python -m tendonlab\.blind (.*)$", PAGE.read_text(encoding="utf-8"), re.M)
     assert [line.split()[0] for line in lines] == ["draw", "run", "score"]
     fake_reports(monkeypatch, Path(shlex.split(lines[2])[1]), right=True)
     for line in lines:

@@ -1,7 +1,7 @@
 """S1: tension propagation with friction in coupled tendon transmissions of a four-joint arm exoskeleton.
 
 The device's radii, ratios and coefficients are reconstructed, the paper prints none, and so is what rests on them.
-The transmission for any number of joints is `tendonlab.routing.TendonTransmission`; as a system of the library,
+The transmission for any number of joints is `tendonlab.TendonTransmission`; as a system of the library,
 `tendon_routing`, it takes every effect."""
 
 from tendonlab.papers.s1.arm import Arm
