@@ -1,20 +1,38 @@
-"""A case that is ready to fit: the bundled rig, prepared once."""
+"""A case that is ready to fit, the bundled rig, and its simulator as a fit of that case."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import tendonlab as tl
+from tendonlab import _core
 from tendonlab.cli.demo import bundled
 from tendonlab.data.datasets import prepare
+from tendonlab.fitting import noise
 from tendonlab.fitting.case import make_case
+from tendonlab.fitting.fitted import Fitted, Fitter
 
 
 @pytest.fixture(scope="session")
 def twin_case() -> Any:
     return make_case(tl.load(bundled()))
+
+
+@pytest.fixture(scope="session")
+def fitter(twin_case: Any) -> Fitter:
+    """Fits the bundled rig under so much noise that its model is about right."""
+    floor = noise.white(twin_case)
+    floor = replace(floor, sd=[20 * s for s in floor.sd])
+    return Fitter(twin_case, noise.whitenings(twin_case, floor), floor, _core.Cancel())
+
+
+@pytest.fixture(scope="session")
+def nominal(fitter: Fitter) -> Fitted:
+    """The simulator of the bundled rig at its nominal values."""
+    return fitter.fit(fitter.case.system, solve=False)
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,6 @@
-"""What a fit is worth: leaving out by one Newton step against fitting again, run-to-run factors, halves."""
+"""What a fit is worth: leaving out by one Newton step against fitting again, run-to-run factors."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,16 +8,9 @@ import pytest
 
 from tendonlab import _core
 from tendonlab.diagnosis.answer import notes
-from tendonlab.diagnosis.search.contest import Bar, Trial, _probabilities
+from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting import noise
 from tendonlab.fitting.fitted import Fitter
-
-
-@pytest.fixture(scope="module")
-def fitter(twin_case: Any) -> Fitter:
-    floor = noise.white(twin_case)
-    floor = replace(floor, sd=[20 * s for s in floor.sd])  # loose enough for the model to be about right
-    return Fitter(twin_case, noise.whitenings(twin_case, floor), floor, _core.Cancel())
 
 
 def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, twin_case: Any) -> None:
@@ -34,17 +26,17 @@ def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, t
         assert step.parameters[f.name] == pytest.approx(again.system.parameters[f.name], abs=0.5 * abs(sd))
 
 
-def test_what_the_experiments_state_themselves_is_not_informed_and_told(fitter: Fitter, twin_case: Any) -> None:
+def test_what_the_experiments_state_themselves_is_not_informed(fitter: Fitter, twin_case: Any) -> None:
     """Of gravity, which every experiment knows, no residual says anything; nor is it proposed to be anything else."""
     known = tuple(replace(e, conditions={**e.conditions, "gravity_torque": 1.0}) for e in twin_case.experiments)
     case = replace(twin_case, experiments=known)
     fitted = replace(fitter, case=case).fit(case.system, max_iterations=3)
     assert fitted.not_informed == ("gravity_torque",)
     assert fitted.system.parameters["gravity_torque"] == pytest.approx(case.system.parameters["gravity_torque"])
-    found: Any = SimpleNamespace(best=fitted, null=fitted)
-    told = "not informed by these data and held at the nominal value: gravity_torque"
-    assert told in notes.warnings(case, fitter.floor, found)
-    rows = notes.details(case, fitter.floor, fitted, found)["parameters"]
+    search = Search(fitter, tuned=fitted, steps=(), rounds=())
+    warning = "not informed by these data and held at the nominal value: gravity_torque"
+    assert warning in notes.warnings(case, fitter.floor, search)
+    rows = notes.details(case, fitter.floor, fitted, search)["parameters"]
     assert [name for name, row in rows.items() if not row["informed"]] == ["gravity_torque"]
 
 
@@ -63,17 +55,3 @@ def test_factors_from_run_to_run_are_found(twin_case: Any) -> None:
     motor, joint = found.initial[0][-2:]
     assert joint == pytest.approx(np.log(1.1), rel=0.02)
     assert motor == pytest.approx(0.0, abs=0.005)
-
-
-def test_probabilities_of_what_is_not_established_rank_behind_none() -> None:
-    def trial(name: str, evidence: float) -> Trial:
-        return Trial(name, None, evidence, evidence, 1.0)  # type: ignore[arg-type]
-
-    bar = Bar(10.0, 3.0, 0.0)
-    trials = [trial("joint:stribeck", 500.0), trial("joint:coulomb", 30.0), trial("joint:asymmetry", 5.0)]
-    established = _probabilities(trials, {t.effect for t in trials if bar.passed(t)}, bar, 4.0)
-    assert sum(established.values()) == pytest.approx(1.0)
-    assert max(established, key=established.__getitem__) == "joint:stribeck"
-    nothing = _probabilities(trials, set(), bar, 4.0)
-    assert nothing[None] > 0.5
-    assert max(nothing, key=nothing.__getitem__) is None

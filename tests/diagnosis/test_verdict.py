@@ -1,20 +1,17 @@
 """The verdict from what tuning leaves: an assumed floor excuses some of it, and no more."""
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis.answer.verdict import FAR, Verdict, decide
+from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, decide
 
 
-def nothing_selected(*, refitted: float, repeated: bool = False, whitened: float = 1.0) -> Verdict:
-    found: Any = SimpleNamespace(null=SimpleNamespace(mean_square=whitened), selected=(), rounds=())
-    floor: Any = SimpleNamespace(repeated=repeated)
-    return decide(found, nominal=1e4, refitted=refitted, explained=None, floor=floor)
+def nothing_selected(*, refitted: float, repeated: bool = False, tuned: float = 1.0) -> Verdict:
+    levels = Levels(nominal=1e4, tuned=tuned, refitted=refitted, explained=None, repeated=repeated)
+    return decide((), (), levels)
 
 
 def test_tuning_explains_what_it_brings_near_an_assumed_floor() -> None:
@@ -29,8 +26,8 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
 
 
 def test_where_runs_repeat_they_decide_and_not_the_plain_floor() -> None:
-    assert nothing_selected(refitted=1e6, repeated=True, whitened=1.1).verdict == "parameters_only"
-    assert nothing_selected(refitted=1.0, repeated=True, whitened=2.0).verdict == "unknown_effect"
+    assert nothing_selected(refitted=1e6, repeated=True, tuned=1.1).verdict == "parameters_only"
+    assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"
 
 
 def test_without_repeats_a_missing_effect_is_not_called_a_matter_of_parameters() -> None:

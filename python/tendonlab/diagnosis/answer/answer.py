@@ -1,4 +1,4 @@
-"""Puts the answers together: gaps and shrinkage on held-out experiments, findings, maps, warnings."""
+"""The answers put together: gaps and shrinkage on held-out experiments, findings, maps, warnings."""
 
 from __future__ import annotations
 
@@ -14,26 +14,31 @@ from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
 from tendonlab.diagnosis.answer.next_experiments import advise
-from tendonlab.diagnosis.answer.verdict import decide
+from tendonlab.diagnosis.answer.verdict import Levels, decide
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import Diagnosis, Overlay
 
 
-def compose(fitter: Fitter, nominal: Fitted, found: Search, *, seed: int, seconds: Callable[[], float]) -> Diagnosis:
-    """The Diagnosis of a finished search."""
+def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], float]) -> Diagnosis:
+    """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone."""
+    fitter = search.fitter
     case, floor = fitter.case, fitter.floor
     judged = case.test or case.train
-    steps = [heldout.replay(case, heldout.models(case, model, judged), judged) for model in found.path]
+    steps = [heldout.replay(case, heldout.models(case, model, judged), judged) for model in search.path]
     untouched = heldout.replay(case, [case.system] * len(judged), judged)
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
-    explained = _explained(stages, floor) if found.selected else None
-    level = nominal.mean_square if floor.repeated else _plain_level(untouched, floor)
-    left = _plain_level(stages["refitted"], floor)
-    verdict = decide(found, nominal=level, refitted=left, explained=explained, floor=floor)
+    levels = Levels(
+        nominal=nominal.mean_square if floor.repeated else _plain_level(stages["nominal"], floor),
+        tuned=search.tuned.mean_square,
+        refitted=_plain_level(stages["refitted"], floor),
+        explained=_explained(stages, floor) if search.selected else None,
+        repeated=floor.repeated,
+    )
+    verdict = decide(search.rounds, search.selected, levels)
     records = where.PortRecords(case, stages["with_effect"], judged)
     rng = np.random.default_rng(seed)
     return Diagnosis(
@@ -49,50 +54,50 @@ def compose(fitter: Fitter, nominal: Fitted, found: Search, *, seed: int, second
             "elements": where.elements(verdict.effects, case),
             "regimes": where.regimes(case, stages["refitted"], floor, records),
         },
-        effects=findings(fitter, found, verdict.effects, stages["refitted"], judged, seed),
+        effects=findings(fitter, search, verdict.effects, stages["refitted"], judged, seed),
         sets=tuple(verdict.sets),
-        selected=found.selected,
-        explained=explained,
+        selected=search.selected,
+        explained=levels.explained,
         indistinguishable=tuple(tuple(group) for group in verdict.indistinguishable),
-        invisible=_invisible(found),
+        invisible=_invisible(search),
         shrinkage={
             "from_nominal": heldout.shrinkage(case, stages["nominal"], stages["with_effect"], floor, judged, rng),
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
-        next_experiments=tuple(_next(case, floor, found) + _measurements(verdict.indistinguishable)),
-        warnings=tuple(notes.warnings(case, floor, found)),
+        next_experiments=tuple(_next(case, floor, search) + _measurements(verdict.indistinguishable)),
+        warnings=tuple(notes.warnings(case, floor, search)),
         units=notes.units(case),
         overlay=_overlay(case, stages, floor, judged),
         where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),
         held_out=_per_experiment(case, stages, floor, judged),
-        table=inverse_dynamics(case, [model.system for model in found.path], judged),
+        table=inverse_dynamics(case, [model.system for model in search.path], judged),
         split={
             "train": [case.experiments[i].name for i in case.train],
             "test": [case.experiments[i].name for i in case.test],
         },
-        details={**notes.details(case, floor, nominal, found), "steps": _steps(case, found, steps)},
+        details={**notes.details(case, floor, nominal, search), "steps": _steps(case, search, steps)},
         seconds=seconds(),
     )
 
 
 def _gap(case: Case, stages: dict[str, Replayed], floor: Floor) -> dict[str, dict[str, float]]:
-    errors = {stage: heldout.rms(of) for stage, of in stages.items()}
+    errors = {stage: heldout.rms(replayed) for stage, replayed in stages.items()}
     return {
         case.outputs[c]: {"noise_floor": float(floor.rms[c]), **{stage: float(e[c]) for stage, e in errors.items()}}
         for c in case.measured
     }
 
 
-def _steps(case: Case, found: Search, replayed: Sequence[Replayed]) -> list[dict[str, Any]]:
+def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> list[dict[str, Any]]:
     """Held-out rms of every output after the refit and after each effect that was added."""
     return [
-        {"effects": list(model.added), "rms": {case.outputs[c]: float(heldout.rms(of)[c]) for c in case.measured}}
-        for model, of in zip(found.path, replayed, strict=True)
+        {"effects": list(model.added), "rms": {case.outputs[c]: float(heldout.rms(run)[c]) for c in case.measured}}
+        for model, run in zip(search.path, replayed, strict=True)
     ]
 
 
-def _plain_level(of: Replayed, floor: Floor) -> float:
-    error = heldout.rms(of)
+def _plain_level(replayed: Replayed, floor: Floor) -> float:
+    error = heldout.rms(replayed)
     there = np.isfinite(floor.rms)
     return float(np.mean(np.square(error[there] / floor.rms[there])))
 
@@ -104,17 +109,19 @@ def _explained(stages: dict[str, Replayed], floor: Floor) -> float | None:
     return None if before <= 0 else float(np.clip(1.0 - max(0.0, after) / before, 0.0, 1.0))
 
 
-def _invisible(found: Search) -> tuple[str, ...]:
-    leads = found.rounds[0].leads if found.rounds else ()
-    return tuple(x.effect for x in leads if max(x.visibility, x.gain) < INVISIBLE and x.effect not in found.selected)
+def _invisible(search: Search) -> tuple[str, ...]:
+    screened = search.rounds[0].screened if search.rounds else ()
+    return tuple(
+        s.effect for s in screened if max(s.visibility, s.gain) < INVISIBLE and s.effect not in search.selected
+    )
 
 
-def _next(case: Case, floor: Floor, found: Search) -> list[dict[str, Any]]:
+def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
     """Between the first effect and what comes next to it in its place."""
-    if not found.rounds or (own := found.rounds[0].accepted) is None:
+    if not search.rounds or (own := search.rounds[0].accepted) is None:
         return []
-    others = [trial.fitted for trial in found.rounds[0].trials if trial is not own]
-    return advise(case, floor, own.fitted, others[0] if others else found.null)
+    others = [trial.fitted for trial in search.rounds[0].trials if trial is not own]
+    return advise(case, floor, own.fitted, others[0] if others else search.tuned)
 
 
 def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
@@ -148,6 +155,6 @@ def _overlay(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequ
 
 
 def _per_experiment(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> pd.DataFrame:
-    squares = {stage: [heldout.row_mean_squares(r) for r in of.residuals] for stage, of in stages.items()}
+    squares = {stage: [heldout.row_mean_squares(r) for r in run.residuals] for stage, run in stages.items()}
     rows = {stage: [heldout.gap(s, floor.rms) for s in values] for stage, values in squares.items()}
     return pd.DataFrame(rows, index=pd.Index([case.experiments[i].name for i in judged], name="experiment"))

@@ -9,8 +9,8 @@ import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
-from tendonlab.diagnosis.search.contest import Trial
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitter
 from tendonlab.report.diagnosis import EffectFinding
@@ -18,21 +18,21 @@ from tendonlab.report.diagnosis import EffectFinding
 
 def findings(
     fitter: Fitter,
-    found: Search,
+    search: Search,
     probability: Mapping[str, float],
     refitted: Replayed,
     judged: Sequence[int],
     seed: int,
 ) -> tuple[EffectFinding, ...]:
     """Every candidate considered, most probable first; those that were refitted with their numbers."""
-    leads = {lead.effect: lead for one in reversed(found.rounds) for lead in one.leads}
-    trials = _telling_trials(found)
+    screened = {s.effect: s for contest in reversed(search.rounds) for s in contest.screened}
+    trials = _telling_trials(search)
     rows = []
-    for name in {**leads, **trials}:
+    for name in {**screened, **trials}:
         element, _, effect = name.rpartition(":")
         extra: dict[str, Any] = {}
-        if name in leads:
-            extra = {"screened_gain": leads[name].gain, "visibility": leads[name].visibility}
+        if name in screened:
+            extra = {"screened_gain": screened[name].gain, "visibility": screened[name].visibility}
         about: dict[str, Any] = {}
         if name in trials:
             about = _numbers(fitter, trials[name], refitted, judged, seed)
@@ -43,12 +43,12 @@ def findings(
     return tuple(sorted(rows, key=lambda r: (-r.probability, -_worth(r))))
 
 
-def _telling_trials(found: Search) -> dict[str, Trial]:
+def _telling_trials(search: Search) -> dict[str, Trial]:
     """Of each effect the trial in the first round that tried it, or in the round that accepted it."""
     chosen: dict[str, Trial] = {}
-    for one in found.rounds:
-        for trial in one.trials:
-            if trial.effect not in chosen or trial is one.accepted:
+    for contest in search.rounds:
+        for trial in contest.trials:
+            if trial.effect not in chosen or trial is contest.accepted:
                 chosen[trial.effect] = trial
     return chosen
 

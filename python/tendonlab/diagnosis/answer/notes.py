@@ -14,7 +14,7 @@ from tendonlab.simulation.catalog import unit
 UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatability is the limit
 
 
-def warnings(case: Case, floor: Floor, found: Search) -> list[str]:
+def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
     """What weakens the answer."""
     said = list(case.dataset.warnings)
     if not floor.repeated:
@@ -31,15 +31,17 @@ def warnings(case: Case, floor: Floor, found: Search) -> list[str]:
             f"{len(case.train)} training experiment{'s' if len(case.train) > 1 else ''}: contiguous blocks of at least "
             "2 s stand for experiments where one is left out"
         )
-    silent = found.best.not_informed
-    bound = [f.name for f, at in zip(found.best.free, found.best.at_bound, strict=True) if at and f.name not in silent]
+    silent = search.final.not_informed
+    bound = [
+        f.name for f, at in zip(search.final.free, search.final.at_bound, strict=True) if at and f.name not in silent
+    ]
     if bound:
         said.append(f"at a bound or the edge of its range: {', '.join(bound)}")
     if silent:
         said.append(f"not informed by these data and held at the nominal value: {', '.join(silent)}")
     if floor.repeated and floor.tau > UNSTEADY:
         said.append(f"friction differs by {floor.tau:.1%} from run to run: repeatability limits what can be said")
-    for model in {m.added: m for m in (found.null, found.best)}.values():
+    for model in {m.added: m for m in (search.tuned, search.final)}.values():
         if not model.converged:
             said.append(
                 f"the fit of {', '.join(model.added) or 'the refitted simulator'} stopped early: {model.message}"
@@ -57,17 +59,17 @@ def units(case: Case) -> dict[str, str]:
     return found | {"time": "s"}
 
 
-def details(case: Case, floor: Floor, nominal: Fitted, found: Search) -> dict[str, Any]:
+def details(case: Case, floor: Floor, nominal: Fitted, search: Search) -> dict[str, Any]:
     """How the numbers came about."""
     return {
         "run_to_run_friction": floor.tau,
         "noise": {case.outputs[c]: float(case.noise[c]) for c in case.measured},
         "mean_square": {
             "nominal": nominal.mean_square,
-            "refitted": found.null.mean_square,
-            "with_effect": found.best.mean_square,
+            "refitted": search.tuned.mean_square,
+            "with_effect": search.final.mean_square,
         },
-        "parameters": {f.name: _parameter(case, found.best, f.name) for f in found.best.free},
+        "parameters": {f.name: _parameter(case, search.final, f.name) for f in search.final.free},
     }
 
 

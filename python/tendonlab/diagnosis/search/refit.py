@@ -1,4 +1,4 @@
-"""One candidate refitted: from the tuned simulator, and from what was believed of it where tuning strained it."""
+"""One candidate refitted: from the tuned simulator, and from its nominal values where tuning strained them."""
 
 from __future__ import annotations
 
@@ -6,77 +6,90 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tendonlab.diagnosis.search.halves import NEAR_FLOOR
-from tendonlab.diagnosis.search.screen import Lead
+from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted, Fitter
 from tendonlab.simulation.system import System
 
 SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
-CATCH_UP = 0.5
-STRAINED = 3.0  # sd from what was believed, to which a parameter was tuned: it makes up for something
-COOLINGS = 6  # fits under noise as large as the misfit, at the most
+CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to be finished
+BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
+STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which it compensates for something
+NUM_COOLINGS = 6  # fits under noise as large as the misfit, at the most
+
+Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
 
 
-def refit(fitter: Fitter, best: Fitted, lead: Lead, *, rival: float | None) -> Fitted | None:
-    """The best fit of `best` with the effect of `lead` over its starts, None where none succeeds; one that lies far
-    behind `rival`, an evidence gained, is not finished."""
-    found: Fitted | None = None
-    for values in lead.starts if lead.simulated else ():
-        found = _better(found, fitter, best, {lead.effect: values}, rival=rival)
-    if strained(fitter, best) and (found is None or found.mean_square > NEAR_FLOOR):
-        found = _better(found, fitter, best, {lead.effect: lead.starts[0]}, rival=rival, believed=True)
-    return found
+def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, rival_gain: float | None) -> Fitted | None:
+    """The best fit of `base` with the candidate over its starts, None where no fit succeeds.
+
+    A fit that lies far behind `rival_gain`, the evidence gain of a rival, is not finished."""
+    best: Fitted | None = None
+    for values in candidate.starts if candidate.simulated else ():
+        fit = _fit(fitter, base, {candidate.effect: values}, best, rival_gain=rival_gain)
+        best = more_evident(best, fit)
+    if strained(fitter, base) and (best is None or best.mean_square > NEAR_FLOOR):
+        values = candidate.starts[0]
+        fit = _fit(fitter, base, {candidate.effect: values}, best, rival_gain=rival_gain, from_nominal=True)
+        best = more_evident(best, fit)
+    return best
 
 
-def _better(
-    found: Fitted | None,
+def more_evident(best: Fitted | None, fit: Fitted | None) -> Fitted | None:
+    """Whichever of two fits has more evidence. A fit whose derivatives exploded has none that counts."""
+    if fit is None or not math.isfinite(fit.evidence):
+        return best
+    return fit if best is None or fit.evidence > best.evidence else best
+
+
+def _fit(
     fitter: Fitter,
-    best: Fitted,
-    effect: Mapping[str, Mapping[str, float]],
+    base: Fitted,
+    effect: Values,
+    best: Fitted | None,
     *,
-    rival: float | None,
-    believed: bool = False,
+    rival_gain: float | None,
+    from_nominal: bool = False,
 ) -> Fitted | None:
-    """`found`, or the fit of `best` with `effect` where that has more evidence; after a sketch, one that lies far
-    behind `rival` is not finished. `believed`: from what was believed of the simulator, not from what it was tuned
-    to."""
-    added = (*best.added, *effect)
+    """`base` refitted with `effect`, None where that fails; only a sketch where it lies far behind the rival or `best`.
+
+    `from_nominal`: start at the nominal values of the simulator instead of the tuned ones."""
+    added = (*base.added, *effect)
     try:
-        system, initial = best.system.with_effects(effect), best.initial
-        if believed:
-            system, initial = _cooled(fitter, best, system, added)
-        fitted = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH)
-        behind = rival is not None and fitted.evidence - best.evidence < CATCH_UP * rival
-        worse = found is not None and fitted.evidence < found.evidence - 50
-        if not (fitted.converged or behind or worse):
-            fitted = fitter.fit(fitted.system, added=added, initial=fitted.initial, max_iterations=40)
+        system, initial = base.system.with_effects(effect), base.initial
+        if from_nominal:
+            system, initial = _cooled(fitter, base, system, added)
+        fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH)
+        hopeless = rival_gain is not None and fit.evidence - base.evidence < CATCH_UP * rival_gain
+        worse = best is not None and fit.evidence < best.evidence - BEHIND
+        if not (fit.converged or hopeless or worse):
+            fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=40)
     except (NumericalError, ParameterError):
-        return found
-    if not math.isfinite(fitted.evidence):  # derivatives that explode tell nothing, and would outbid everything
-        return found
-    return fitted if found is None or fitted.evidence > found.evidence else found
+        return None
+    return fit
 
 
-def strained(fitter: Fitter, best: Fitted) -> bool:
-    """Was a nominal parameter tuned further than is believable? It makes up for what is missing, and once that is
-    there, its value is no good place to start from."""
-    known = fitter.case.dataset.parameters
-    return any(abs(x - f.mean) > STRAINED * f.sd for f, x in zip(best.free, best.x, strict=True) if f.name in known)
+def strained(fitter: Fitter, base: Fitted) -> bool:
+    """Whether a nominal parameter was tuned further than its prior makes believable. It then compensates for a missing
+    effect, and its value is a poor start once the effect is there."""
+    stated = fitter.case.dataset.parameters
+    return any(abs(x - f.mean) > STRAINED * f.sd for f, x in zip(base.free, base.x, strict=True) if f.name in stated)
 
 
 def _cooled(
-    fitter: Fitter, best: Fitted, system: System, added: Sequence[str]
+    fitter: Fitter, base: Fitted, system: System, added: Sequence[str]
 ) -> tuple[System, tuple[tuple[float, ...], ...]]:
-    """A start from the believed values: fits under noise as large as the misfit, so that what the data say little of
-    stays where it is believed, as long as each fit halves the misfit."""
-    known = fitter.case.dataset.parameters
-    system = system.with_parameters({f.name: f.value(f.mean) for f in best.free if f.name in known})
-    fitted = fitter.fit(system, added=added, solve=False)
-    misfit = fitted.mean_square
-    for _ in range(COOLINGS):
+    """A start from the nominal values: fits under noise as large as the misfit, as long as each fit halves the misfit.
+
+    Under so much noise, parameters that the data hardly determine stay at their nominal values."""
+    stated = fitter.case.dataset.parameters
+    system = system.with_parameters({f.name: f.value(f.mean) for f in base.free if f.name in stated})
+    fit = fitter.fit(system, added=added, solve=False)
+    misfit = fit.mean_square
+    for _ in range(NUM_COOLINGS):
         level = max(1.0, misfit)
-        fitted = fitter.under(level).fit(fitted.system, added=added, initial=fitted.initial, max_iterations=SKETCH)
-        misfit = level * fitted.mean_square
+        fit = fitter.under(level).fit(fit.system, added=added, initial=fit.initial, max_iterations=SKETCH)
+        misfit = level * fit.mean_square
         if misfit > 0.5 * level or misfit < NEAR_FLOOR:
             break
-    return fitted.system, fitted.initial
+    return fit.system, fit.initial

@@ -1,14 +1,18 @@
-"""Each effect beside the others: alone, an effect may gain most because it imitates two that belong together, and what
-it was worth then says little about whether it is part of the cause."""
+"""The place of each effect contested by its rivals, given the other effects.
+
+Alone, an effect may gain most because it imitates two that belong together. What it gained alone then says little about
+whether it is part of the cause."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from tendonlab.diagnosis.search.contest import DETECT, HOPEFUL, Round, Trial, Workshop, again, another, conclude
-from tendonlab.diagnosis.search.halves import confirmed
+from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effect
+from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
+from tendonlab.diagnosis.search.trial import DETECT, Trial, bar_for_further_effect
+from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted, Fitter
 from tendonlab.simulation.system import System
@@ -17,103 +21,119 @@ NUM_RIVALS, MAX_EFFECTS = 3, 3
 
 
 @dataclass(frozen=True)
-class Seat:
-    """The place of one effect: the model of the `others` without it, what it gains there (`own`), and the round in
-    which it stands against everything else that might take the place."""
+class Place:
+    """The place of one effect in a model: the model of the `others` without it, the trial of the effect that holds the
+    place (`holder`), and the round in which its rivals contested it."""
 
     others: Fitted
-    own: Trial
+    holder: Trial
     round: Round
 
-    def key(self, effect: Trial) -> tuple[frozenset[str], str]:
-        """What the place of `effect` goes by."""
-        return frozenset(self.others.added), effect.effect
+    @property
+    def key(self) -> tuple[frozenset[str], str]:
+        """What identifies a place: the other effects, and its holder."""
+        return frozenset(self.others.added), self.holder.effect
 
     def rival(self) -> Trial | None:
-        """The best other claim to it, unless that lies far behind."""
-        able = [t for t in self.round.trials if t.effect != self.own.effect and t.effect in self.round.established]
+        """The best other established trial for this place, unless it lies far behind the holder."""
+        trials = self.round.trials
+        able = [t for t in trials if t.effect != self.holder.effect and t.effect in self.round.established]
         best = max(able, key=lambda t: t.evidence_gain, default=None)
-        return best if best and best.evidence_gain > CATCH_UP * self.own.evidence_gain else None
+        return best if best and best.evidence_gain > CATCH_UP * self.holder.evidence_gain else None
 
-    def given_to(self, rival: Trial) -> Seat:
-        """The same place with `rival` in it."""
-        return Seat(self.others, rival, replace(self.round, accepted=rival))
-
-
-Known = dict[tuple[frozenset[str], str], Seat]  # by the effects beside it, and its own
+    def with_rival(self, rival: Trial) -> Place:
+        """The same place held by `rival`."""
+        return Place(self.others, rival, replace(self.round, accepted=rival))
 
 
-def seats(fitter: Fitter, best: Fitted, known: Known, shop: Workshop) -> list[Seat]:
-    """A seat for each effect of `best`: the one in `known`, else a new one; an older one of another company where the
-    others cannot do without it."""
-    found = []
-    for effect in best.added:
-        others = frozenset(best.added) - {effect}
-        seat = known.get((others, effect))
-        if seat is None:
+Places = Mapping[tuple[frozenset[str], str], Place]  # by Place.key, in the order in which they were first contested
+
+
+@dataclass(frozen=True)
+class Improved:
+    """A better model, and the contest that its new effect won (None: an effect was dropped)."""
+
+    model: Fitted
+    won: Place | None = None
+
+
+def largest_gain(places: Places) -> float:
+    """The most evidence that an effect has gained so far."""
+    return max((place.holder.evidence_gain for place in places.values()), default=0.0)
+
+
+def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Workshop) -> list[Place]:
+    """The place of each effect of `base`: the stored contest for this effect if its companions are the same, else a new
+    one; the latest stored contest if the model cannot run without the effect."""
+    contested = []
+    for effect in base.added:
+        place = places.get((frozenset(base.added) - {effect}, effect))
+        if place is None:
             try:
-                seat = _seat(fitter, best, effect, shop)
+                place = _contest(fitter, base, effect, shop)
             except (NumericalError, ParameterError):
-                seat = next(known[key] for key in reversed(known) if key[1] == effect)
-        found.append(seat)
-    return found
+                place = next(places[key] for key in reversed(list(places)) if key[1] == effect)
+        contested.append(place)
+    return contested
 
 
-def _seat(fitter: Fitter, best: Fitted, effect: str, shop: Workshop) -> Seat:
-    rest = tuple(name for name in best.added if name != effect)
-    others = fitter.fit(without(fitter, best, (effect,)), added=rest, initial=best.initial)
-    own = Trial.of(effect, replace(best, added=(*rest, effect)), others)
+def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place:
+    rest = tuple(name for name in base.added if name != effect)
+    others = fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial)
+    holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
     label = f"instead of {effect}"
-    leads = shop.leads(fitter, others, label)
-    rivals = [x for x in leads if x.effect != effect and x.gain > HOPEFUL * DETECT.evidence][:NUM_RIVALS]
-    trials = shop.refit(fitter, others, rivals, label, known=own)
-    passed = {t.effect for t in trials if DETECT.passed(t) and not (_leads(t, own) and not _holds(fitter, best, t))}
-    return Seat(others, own, conclude(others, leads, trials, passed=passed, bar=DETECT, accepted=own))
+    screened = shop.screen_all(fitter, others, label)
+    promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
+    trials = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, incumbent=holder)
+
+    def establishes(t: Trial) -> bool:
+        ahead = _clearly_better(t, holder)
+        return DETECT.passed(t) and (not ahead or predicts_better(fitter, base, t.fitted))
+
+    established = {t.effect for t in trials if establishes(t)}
+    round_ = Round.of(others, screened, trials, established=established, bar=DETECT, accepted=holder)
+    return Place(others, holder, round_)
 
 
-def exchange(fitter: Fitter, best: Fitted, chosen: Sequence[Seat], known: Known, shop: Workshop) -> Fitted | None:
-    """The model in which a seat is given to nothing, to what fills it clearly better, or to what does so together with
-    one effect more; `known` then holds who took a seat. None where every effect is in its place."""
-    first = max(chosen, key=lambda seat: seat.own.evidence_gain)
-    bar = again(fitter, first.own.evidence_gain)
-    needless = [seat for seat in chosen if seat is not first and not bar.passed(seat.own)]
+def improve(
+    fitter: Fitter, base: Fitted, contested: Sequence[Place], places: Places, shop: Workshop
+) -> Improved | None:
+    """Try to improve the set: drop a needless effect, swap one for a clearly better rival, or swap and add one.
+
+    None where every effect deserves its place."""
+    strongest = max(contested, key=lambda place: place.holder.evidence_gain)
+    bar = bar_for_further_effect(fitter, strongest.holder.evidence_gain)
+    needless = [place for place in contested if place is not strongest and not bar.passed(place.holder)]
     if needless:
-        return min(needless, key=lambda seat: seat.own.evidence_gain).others
-    claims = [(seat, rival) for seat in chosen if (rival := seat.rival()) is not None]
-    for seat, rival in sorted(claims, key=lambda claim: -claim[1].fitted.evidence):
-        if _leads(rival, seat.own):
-            known[seat.key(rival)] = seat.given_to(rival)
-            return rival.fitted
-    for _, rival in claims if len(best.added) < MAX_EFFECTS else []:
-        together = another(fitter, rival.fitted, most=most(known), shop=shop)
-        if together is None or (friend := together.accepted) is None:
-            continue
-        clear = friend.fitted.evidence - best.evidence > again(fitter, most(known)).evidence
-        if clear and _holds(fitter, best, friend):
-            shared = Seat(rival.fitted, friend, together)
-            known[shared.key(friend)] = shared
-            return friend.fitted
+        return Improved(min(needless, key=lambda place: place.holder.evidence_gain).others)
+    claims = [(place, rival) for place in contested if (rival := place.rival()) is not None]
+    for place, rival in sorted(claims, key=lambda claim: -claim[1].fitted.evidence):
+        if _clearly_better(rival, place.holder):
+            return Improved(rival.fitted, place.with_rival(rival))
+    for _, rival in claims if len(base.added) < MAX_EFFECTS else []:
+        pair = _rival_and_one_more(fitter, base, rival, places, shop)
+        if pair is not None:
+            return pair
     return None
 
 
-def most(known: Known) -> float:
-    """The most evidence that an effect has gained so far."""
-    return max((seat.own.evidence_gain for seat in known.values()), default=0.0)
+def _rival_and_one_more(fitter: Fitter, base: Fitted, rival: Trial, places: Places, shop: Workshop) -> Improved | None:
+    """The model of `rival` with one effect more, where that is clearly better than `base`."""
+    round_ = next_effect(fitter, rival.fitted, largest_gain=largest_gain(places), shop=shop)
+    if round_ is None or round_.accepted is None:
+        return None
+    pair = round_.accepted.fitted
+    clear = pair.evidence - base.evidence > bar_for_further_effect(fitter, largest_gain(places)).evidence
+    if not clear or not predicts_better(fitter, base, pair):
+        return None
+    return Improved(pair, Place(rival.fitted, round_.accepted, round_))
 
 
-def _leads(rival: Trial, own: Trial) -> bool:
-    return rival.evidence_gain - own.evidence_gain > DETECT.evidence
+def _clearly_better(rival: Trial, holder: Trial) -> bool:
+    return rival.evidence_gain - holder.evidence_gain > DETECT.evidence
 
 
-def _holds(fitter: Fitter, best: Fitted, instead: Trial) -> bool:
-    """Whether it predicts experiments that it was not fitted to better than `best`, whose place it would take."""
-    try:
-        return confirmed(fitter, best, instead.fitted)
-    except NumericalError:
-        return False
-
-
-def without(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> System:
+def drop_effects(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> System:
     """The simulator of `model` without some of the effects that were added to it."""
     own = model.system.parameters
     nominal = fitter.case.system

@@ -1,98 +1,101 @@
-"""Which effects: added one at a time, then each judged again beside the others (docs/method.md)."""
+"""Which effects: added one at a time, then the place of each contested given the others."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from tendonlab.diagnosis.search.contest import Round, Workshop, another
-from tendonlab.diagnosis.search.rivals import MAX_EFFECTS, Known, Seat, exchange, most, seats, without
+from tendonlab.diagnosis.floor import renewed
+from tendonlab.diagnosis.search.contest import Round, next_effect
+from tendonlab.diagnosis.search.rivals import (
+    MAX_EFFECTS,
+    Place,
+    Places,
+    contest_each_place,
+    drop_effects,
+    improve,
+    largest_gain,
+)
+from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.fitted import Fitted, Fitter
 
-MAX_EXCHANGES = 3
+MAX_IMPROVEMENTS = 3
 
 
 @dataclass(frozen=True)
 class Search:
-    """The refitted simulator, the models that lead from it to the one that came out, effect by effect, and the rounds
-    that chose: one an effect, beside the others, and the one that found no further effect."""
+    """The outcome of a search. `tuned`: the refitted simulator without any added effect. `steps`: the model after each
+    effect that was added. `rounds`: the contest for the place of each effect, then the one that no further effect won.
+    `fitter`: the last one, under whose noise floor the final model was judged."""
 
-    null: Fitted
+    fitter: Fitter
+    tuned: Fitted
     steps: tuple[Fitted, ...]
     rounds: tuple[Round, ...]
 
     @property
-    def best(self) -> Fitted:
+    def final(self) -> Fitted:
         """The model that came out."""
         return self.path[-1]
 
     @property
     def selected(self) -> tuple[str, ...]:
-        """Effects established, in the order in which they were found."""
-        return self.best.added
+        """Effects established, in the order in which they were added."""
+        return self.final.added
 
     @property
     def path(self) -> tuple[Fitted, ...]:
         """The refitted simulator, and the model after each effect that was added."""
-        return (self.null, *self.steps)
+        return (self.tuned, *self.steps)
 
 
-Renew = Callable[[Fitter, Fitted], tuple[Fitter, Fitted]]
+@dataclass(frozen=True)
+class _Extended:
+    """Models with more and more effects, the fitter for the search beyond the last one, the places contested so far,
+    and the rounds that no further effect won: one or none."""
+
+    fitter: Fitter
+    steps: tuple[Fitted, ...] = ()
+    places: Places = field(default_factory=dict)
+    last: tuple[Round, ...] = ()
 
 
-def search(
-    fitter: Fitter,
-    null: Fitted,
-    *,
-    pool: ThreadPoolExecutor,
-    renew: Renew,
-    progress: bool,
-    library: Sequence[str] | None,
-) -> Search:
-    """Add effects one at a time, as long as evidence and left-out experiments both ask for it; then judge each beside
-    the others: what explains most alone may only imitate two that belong together. `renew` gives the fitter for the
-    search beyond a model, and the model in its eyes."""
-    shop = Workshop(pool, progress, library)
-    steps, known, last = list[Fitted](), Known(), list[Round]()
-    for exchanges in range(MAX_EXCHANGES + 1):
-        fitter, last = _forward(fitter, null, steps, known, shop=shop, renew=renew)
-        chosen = seats(fitter, steps[-1], known, shop) if steps else []
-        better = (
-            exchange(fitter, steps[-1], chosen, known, shop) if len(chosen) > 1 and exchanges < MAX_EXCHANGES else None
-        )
+def select_effects(fitter: Fitter, tuned: Fitted, shop: Workshop) -> Search:
+    """Add effects to the `tuned` simulator one at a time, as long as evidence and left-out experiments both demand it;
+    then let rivals contest the place of each. The effect that explains most alone may only imitate two that belong
+    together."""
+    state = _Extended(fitter)
+    for attempt in range(MAX_IMPROVEMENTS + 1):
+        state = _add_effects(state, tuned, shop)
+        contested = contest_each_place(state.fitter, state.steps[-1], state.places, shop) if state.steps else []
+        if len(contested) < 2 or attempt == MAX_IMPROVEMENTS:
+            break
+        better = improve(state.fitter, state.steps[-1], contested, state.places, shop)
         if better is None:
             break
-        fitter, best = renew(fitter, better)
-        steps = [*_on_the_way(fitter, best), best]
-    return Search(null, tuple(steps), (*(seat.round for seat in chosen), *last))
+        places = {**state.places, **({better.won.key: better.won} if better.won else {})}
+        fitter, model = renewed(state.fitter, better.model, shop.pool)
+        state = _Extended(fitter, (*_models_before(fitter, model), model), places)
+    return Search(state.fitter, tuned, state.steps, (*(place.round for place in contested), *state.last))
 
 
-def _forward(
-    fitter: Fitter,
-    null: Fitted,
-    steps: list[Fitted],
-    known: Known,
-    *,
-    shop: Workshop,
-    renew: Renew,
-) -> tuple[Fitter, list[Round]]:
-    """Add effects to `steps` until none is established, and the seats they won to `known`. The fitter then, and the
-    round that found none, if there was one."""
+def _add_effects(state: _Extended, tuned: Fitted, shop: Workshop) -> _Extended:
+    """Add effects until none is established or there are as many as are allowed."""
+    fitter, steps, places = state.fitter, state.steps, state.places
     while len(steps) < MAX_EFFECTS:
-        best = steps[-1] if steps else null
-        one = another(fitter, best, most=most(known), shop=shop)
-        if one is None or one.accepted is None:
-            return fitter, [one] if one else []
-        known[frozenset(best.added), one.accepted.effect] = Seat(best, one.accepted, one)
-        fitter, best = renew(fitter, one.accepted.fitted)
-        steps.append(best)
-    return fitter, []
+        base = steps[-1] if steps else tuned
+        contest = next_effect(fitter, base, largest_gain=largest_gain(places), shop=shop)
+        if contest is None or contest.accepted is None:
+            return _Extended(fitter, steps, places, (contest,) if contest else ())
+        place = Place(base, contest.accepted, contest)
+        places = {**places, place.key: place}
+        fitter, model = renewed(fitter, contest.accepted.fitted, shop.pool)
+        steps = (*steps, model)
+    return _Extended(fitter, steps, places)
 
 
-def _on_the_way(fitter: Fitter, best: Fitted) -> list[Fitted]:
-    """The models between the refitted simulator and `best`, effect by effect."""
+def _models_before(fitter: Fitter, model: Fitted) -> list[Fitted]:
+    """The models between the refitted simulator and `model`, effect by effect."""
     return [
-        fitter.fit(without(fitter, best, best.added[k:]), added=best.added[:k], initial=best.initial)
-        for k in range(1, len(best.added))
+        fitter.fit(drop_effects(fitter, model, model.added[k:]), added=model.added[:k], initial=model.initial)
+        for k in range(1, len(model.added))
     ]

@@ -1,0 +1,61 @@
+"""The noise floor that a diagnosis judges under: the first one, and a new one after each effect that was added."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.fitting import noise
+from tendonlab.fitting.case import Case, fine_enough
+from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.noise import Floor, Sensitivities
+
+ROUGH = 8  # iterations of the fit under white noise, of which only the residuals are used
+
+
+def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
+    """A fit under the sensors' white noise alone, before the floor is known."""
+    return _fitter(case, noise.white(case), cancel).fit(case.system, max_iterations=ROUGH)
+
+
+def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> Fitter:
+    """The fitter under the noise floor: from repeats, else from the residuals of a rough fit.
+
+    Friction then varies from run to run as the floor says, and the simulator is as exact as the floor requires."""
+    seen = _sensitivities(case, rough, pool)
+    floor = noise.estimate(case, seen, case.train)
+    groups = tuple((tuple(group), floor.tau) for group in noise.friction_groups(case.system))
+    settings = fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd)))
+    return _fitter(replace(case, settings=settings, scatter=groups), floor, cancel, seen)
+
+
+def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:
+    """The fitter for the search beyond `model`, and the model refitted under it.
+
+    Repeats determine the noise once and for all. Without them, noise is the residual of the best model so far."""
+    if fitter.floor.repeated:
+        return fitter, model
+    case = fitter.case
+    seen = _sensitivities(case, model, pool)
+    residual = noise.estimate(case, seen, case.train)
+    floor = replace(fitter.floor, sd=residual.sd, share=residual.share)
+    fitter = _fitter(case, floor, fitter.cancel, seen)
+    return fitter, fitter.fit(model.system, added=model.added, initial=model.initial)
+
+
+def _fitter(case: Case, floor: Floor, cancel: _core.Cancel, seen: Sequence[Sensitivities] = ()) -> Fitter:
+    return Fitter(case, noise.whitenings(case, floor, seen), floor, cancel)
+
+
+def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list[Sensitivities]:
+    initial = dict(zip(case.train, fitted.initial, strict=True))
+
+    def seen(i: int) -> Sensitivities:
+        start = initial.get(i, case.own_mean(i).tolist())
+        return noise.sensitivities(case, fitted.system, i, start)
+
+    return list(pool.map(seen, range(len(case.experiments))))

@@ -1,0 +1,66 @@
+"""Where candidates are screened and refitted: threads, progress bars, and the effects to choose from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from tqdm import tqdm
+
+from tendonlab import _core
+from tendonlab.diagnosis.search.refit import refit
+from tendonlab.diagnosis.search.screen import Screened, candidates, screen
+from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.fitting.fitted import Fitted, Fitter
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """Threads for simulations and fits, `cancel` to stop them, whether progress is shown, and the names of the effects
+    to choose from (None: all)."""
+
+    pool: ThreadPoolExecutor
+    cancel: _core.Cancel
+    progress: bool
+    library: Sequence[str] | None
+
+    def screen_all(self, fitter: Fitter, base: Fitted, label: str) -> list[Screened]:
+        """All candidates as the screen sees them, most promising first."""
+        names = [c for c in candidates(fitter.case, base) if self.library is None or c in self.library]
+        work = self.pool.map(lambda name: screen(fitter, base, name), names)
+        shown = tqdm(work, desc=f"screen {label}", total=len(names), disable=not self.progress, leave=False)
+        return sorted(shown, key=lambda screened: -screened.gain)
+
+    def refit_all(
+        self, fitter: Fitter, base: Fitted, chosen: Sequence[Screened], label: str, incumbent: Trial | None = None
+    ) -> list[Trial]:
+        """The chosen candidates refitted, best first. The first sets the pace for the others, unless there is an
+        `incumbent`: a trial that is fitted already."""
+        first = [incumbent] if incumbent else _tried(fitter, base, chosen[0], rival_gain=None) if chosen else []
+        rival_gain = max((t.evidence_gain for t in first), default=0.0)
+        rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
+        work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, rival_gain=rival_gain), rest)
+        shown = tqdm(work, desc=f"refit {label}", total=len(rest), disable=not self.progress, leave=False)
+        trials = [*first, *(trial for tried in shown for trial in tried)]
+        return sorted(trials, key=lambda trial: -trial.evidence_gain)
+
+
+def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, rival_gain: float | None) -> list[Trial]:
+    fit = refit(fitter, base, candidate, rival_gain=rival_gain)
+    return [Trial.of(candidate.effect, fit, base)] if fit else []
+
+
+@contextmanager
+def open_workshop(library: Sequence[str] | None, *, progress: bool) -> Iterator[Workshop]:
+    """A workshop whose threads end with the block; Ctrl-C and errors cancel the fits that run in them."""
+    cancel = _core.Cancel()
+    pool = ThreadPoolExecutor()
+    try:
+        yield Workshop(pool, cancel, progress, library)
+    except BaseException:
+        cancel.set()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
