@@ -2,9 +2,9 @@
 
 `bench` has the rig, `bearings` the reactions and the relative load (9), `drive` the drive (7, 8), its stiffness and
 the dynamic LuGre model (2), `models` the static LuGre curve (3) and the load-and-ratio model (11), `fits` their fits,
-`twin` and `runs` the reconstructed bench, `maps` what is read off friction maps, `experiments` the twin as a dataset,
-`evidence` what its numbers say, `figures` and `drawings` the figures, `comparison` what the paper prints beside what
-comes out here."""
+`twin` and `runs` the reconstructed bench, `maps` features of friction maps, `experiments` the twin as a dataset,
+`evidence` bounds on the preload, `figures` and `drawings` the figures, `comparison` printed next to computed
+numbers."""
 
 from tendonlab.papers.s0.bearings import (
     Reactions,

@@ -1,4 +1,4 @@
-"""What the bearings carry: reactions of pulley and capstan shaft, and the relative load (S0 eq. 9).
+"""Load of the bearings: reactions of pulley and capstan shaft, and the relative load (S0 eq. 9).
 
 S0 does not print the cable's preload, nor the direction of its pull: by default it is 0 N and along the line of
 centres, horizontal (reconstructed)."""
@@ -98,7 +98,7 @@ def relative_load(
     disc: str = "E",
     cable_diameter: bool = False,
 ) -> float:
-    """Relative load L_r, 1: what the pulley's bearings carry over what own weight alone makes them carry (S0 eq. 9).
+    """Relative load L_r, 1: bearing reactions of the pulley over those by its own weight alone (S0 eq. 9).
 
     `pretension` N of each cable side. `scope`: own weight of the "pulley" shaft only, or of both shafts of the
     "transmission", which S0 may also mean. `cable_axis`: "z" horizontal, "y" vertical. `disc`: the load at "E" or at

@@ -16,7 +16,7 @@ def differences() -> pd.DataFrame:
     """Every number of S0's tables and text that can be recomputed: `printed`, `computed`, `difference`, `tolerance`
     (all in the number's own unit) and `within`, indexed by what it is.
 
-    Where only the twin can answer, the twin was made to: then the row says that the reconstruction is consistent."""
+    Rows that need the twin only show that the reconstruction is consistent with the print."""
     rows = [*_ratios(), *_tables_6_and_7(), *_table_8(), *_text()]
     frame = pd.DataFrame(rows, columns=["what", "printed", "computed", "tolerance"]).set_index("what")
     frame.insert(2, "difference", frame["computed"] - frame["printed"])

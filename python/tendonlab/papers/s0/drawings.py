@@ -58,7 +58,7 @@ def capstan_diagram(axes: tuple[Axes, Axes], of: Configuration, *, pretension: f
 
 
 def drive_scheme(ax: Axes) -> Axes:
-    """Fig. 6: what turns with the motor, what with the pulley, and the ratio between (eq. 7)."""
+    """Fig. 6: parts that turn with the motor, parts that turn with the pulley, and the ratio between (eq. 7)."""
     from matplotlib.patches import FancyBboxPatch
 
     boxes = (

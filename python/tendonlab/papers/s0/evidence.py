@@ -1,4 +1,4 @@
-"""What S0's own numbers say of its model: how large the preload can be, and what the load effect is not."""
+"""Bounds from S0's own numbers: how large the preload can be, and how little bearing friction explains."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CATALOGUE_COEFFICIENT = 0.0015  # 1, friction of a deep groove ball bearing at i
 
 def peaks_and_loads() -> pd.DataFrame:
     """The six loaded configurations of Table 8: `carried`, sum of the pulley's bearing reactions without preload, N,
-    and the measured `peak`, N·m, in order of what is carried."""
+    and the measured `peak`, N·m, in order of `carried`."""
     measured = printed_peaks()["measured"]
     rows = {
         of.name: {"carried": pulley_reactions(of).total, "peak": float(measured[of.name])}

@@ -1,4 +1,4 @@
-"""The twin's maps as a dataset of the library, and simulators of them: what S0's own gap is diagnosed on."""
+"""The twin's maps as a dataset of the library, and simulators of them, on which S0's own gap is diagnosed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HELD_OUT = 1  # of them
 
 
 def lugre_system(model: Lugre) -> System:
-    """The static LuGre curve as a simulator of the library: it knows no load."""
+    """The static LuGre curve as a simulator of the library: friction without load dependence."""
     return System(kind="friction_map", effects=LUGRE, parameters=_lugre_values(model))
 
 
@@ -37,8 +37,8 @@ def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
     """Twin maps of a transmission under its four loads, and the static LuGre simulator with the values of S0 Table 6
     or 7: the load, that the simulator lacks, is withheld.
 
-    Each load is mapped in four passes of five runs a point and both directions; the passes repeat one another, the last
-    is held out. Everything is reconstructed."""
+    Each load is mapped in four passes of five runs per point in both directions; the passes repeat one another, the
+    last is held out. Everything is reconstructed."""
     rng = generator(seed)
     ratio = configuration(transmission).ratio()
     experiments = [

@@ -116,7 +116,7 @@ def fit_on_twin(
     """The load-and-ratio model on the twin's 88 noiseless points of a transmission.
 
     `reference`: the column of S0 Table 8 that the three peaks are drawn to, "proposed" (what the paper's own curve has
-    there; gives the reconstructed set "identified_on_twin") or "measured"; None: no more than the points."""
+    there; gives the reconstructed set "identified_on_twin") or "measured"; None: the points alone."""
     speed, load, torque = twin.points(transmission)
     drawn = None
     if reference is not None:

@@ -1,4 +1,4 @@
-"""Friction maps (S0 Figs 10 to 18): mean torque against mean speed of a configuration, and what is read off them."""
+"""Friction maps (S0 Figs 10 to 18): mean torque against mean speed of a configuration, and their features."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The two models of S0 in its own symbols: the static LuGre curve (eq. 3) and the load-and-ratio model (eq. 11).
 
-Formulas are the library's laws; here are only names, sets of numbers, and what is said of them."""
+Formulas are the library's laws; this file adds names, parameter sets and warnings."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Lugre:
 
     @property
     def warning(self) -> str:
-        """What to beware of, "" where nothing."""
+        """A warning about these values, or ""."""
         if self.F_s >= self.F_c:
             return ""
         return f"F_s = {self.F_s:.4g} < F_c = {self.F_c:.4g} N·m: shape parameters of a rising curve, no stiction"

@@ -50,7 +50,7 @@ def first_joints(device: TendonTransmission, num_joints: int) -> TendonTransmiss
 
 
 def without_tension_loss(device: TendonTransmission) -> TendonTransmission:
-    """The same device as whoever identifies (12) knows it: no loss in proportion to tension."""
+    """The same device without loss in proportion to tension, as an identification of (12) sees it."""
     return replace(device, losses=device.losses.scaled(tension=0.0))
 
 

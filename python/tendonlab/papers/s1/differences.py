@@ -18,9 +18,9 @@ EXAMPLE_VELOCITY = np.array([0.4, 0.3, -0.5, 0.6])  # rad/s [reconstructed]
 
 
 def differences() -> pd.DataFrame:
-    """A row a number: `printed`, `computed`, their `difference`, the `tolerance` and whether it is `within`. The first
-    rows are stated in the paper, and the last of them as a bound ("more than"); the others, `status` recomputed, come
-    from a separate computation on the reconstructed device, since the paper prints no data of its own."""
+    """One row per number: `printed`, `computed`, their `difference`, the `tolerance` and whether it is `within`. The
+    first rows are stated in the paper, and the last of them as a bound ("more than"); the others, `status` recomputed,
+    come from a separate computation on the reconstructed device, since the paper prints no data of its own."""
     computed = {**_stated(), **_statics(), **_identified(), **_compensated()}
     rows = [
         ("degrees of freedom", float(_fact("degrees of freedom of the L-EXOS")), 0.0, "paper"),

@@ -1,4 +1,4 @@
-"""The numerical experiments around S1: what each effect alone costs, what the strategies find, what a reducer does."""
+"""The numerical experiments around S1: cost of each effect, results of the strategies, and the loop of a reducer."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class FeedForward:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeMotion:
-    """What a user feels. `without`, `compensated` (m, n): torque that the user gives to each joint, N·m, with gravity
+    """Effort of the user. `without`, `compensated` (m, n): torque that the user gives to each joint, N·m, with gravity
     alone held by the motors and with feed-forward."""
 
     trajectory: Trajectory
@@ -101,7 +101,7 @@ class FreeMotion:
 
 
 def user_torque(device: TendonTransmission, motor_torque: np.ndarray, at: Trajectory, needed: np.ndarray) -> np.ndarray:
-    """What the user adds (m, n), N·m: `needed` by the joints less what the transmissions give them. The paper's fig. 7
+    """Torque of the user (m, n), N·m: `needed` at the joints minus the torque of the transmissions. The paper's fig. 7
     leaves open which torque it shows; this is the reconstruction used here. Source: S1 fig. 7."""
     given: Propagation = device.statics.direct(motor_torque, at.joint_velocity)
     return np.asarray(needed - given.torque)

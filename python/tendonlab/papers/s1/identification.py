@@ -59,7 +59,7 @@ def plan_identification(
 
 
 def steady_average(log: pd.DataFrame) -> pd.DataFrame:
-    """One row a plateau of constant speed: `speed`, rad/s, and `torque`, N·m, of the motor, gravity removed.
+    """One row per plateau of constant speed: `speed`, rad/s, and `torque`, N·m, of the motor, gravity removed.
 
     `log`: indexed by time, s, with columns `motor_velocity`, `motor_torque` and `joint_angle`, rad. What does not
     change its sign with the direction at equal angles, gravity above all, is taken away. Raises DatasetError for a
@@ -92,7 +92,9 @@ def fit_motor_friction(speed: Sequence[float] | np.ndarray, torque: Sequence[flo
     speeds are fewer than three or all alike in magnitude. Source: S1 eq. 13, with the sign."""
     v, c = np.asarray(speed, dtype=float), np.asarray(torque, dtype=float)
     if v.shape != c.shape or v.size < 3 or np.ptp(np.abs(v)) == 0 or np.any(v == 0):
-        raise DatasetError(f"speeds {v.tolist()}: expected three or more, not 0, of different magnitude, each a torque")
+        raise DatasetError(
+            f"speeds {v.tolist()}: expected three or more, not 0, of different magnitude, one torque each"
+        )
     columns = np.column_stack([np.sign(v), v])
     found, *_ = np.linalg.lstsq(columns, c, rcond=None)
     variance = float(np.sum((c - columns @ found) ** 2)) / (v.size - 2)
@@ -111,7 +113,7 @@ def true_motor_friction(transmission: TendonTransmission, joint: int) -> tuple[f
 def identify_joint(
     transmission: TendonTransmission, joint: int, *, strategy: Strategy, speeds: Sequence[float], model: Model = "eq12"
 ) -> MotorFriction:
-    """What a strategy finds on a device with these losses and nothing else to hold."""
+    """Result of a strategy on a device with these losses and no gravity."""
     plan = plan_identification(transmission, joint, strategy=strategy, speeds=speeds)
     torque = transmission.statics.inverse(np.zeros_like(plan.joint_velocity), plan.joint_velocity, model=model).torque
     return fit_motor_friction(plan.speed, torque[:, joint - 1])
@@ -192,7 +194,7 @@ def decompose(
     within("constant", constant, -np.inf, np.inf, "N·m"), within("viscous", viscous, -np.inf, np.inf, "N·m·s/rad")
     k = np.abs(samples("branch_per_motor", branch_per_motor))
     if np.any(k == 0):
-        raise ParameterError(f"branch_per_motor = {k.tolist()}: expected lengths other than 0, one a branch")
+        raise ParameterError(f"branch_per_motor = {k.tolist()}: expected lengths other than 0, one per branch")
     shares = {"shares_static": shares_static, "shares_viscous": shares_viscous}
     p = {name: samples(name, values) for name, values in shares.items()}
     for name, values in p.items():

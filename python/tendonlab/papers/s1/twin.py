@@ -1,5 +1,5 @@
 """A twin of the device that shares no law with the library: the recursion of S1 fig. 4 in closed form, with all losses.
-It makes the logs on which the paper's missing effect, the loss in proportion to tension, is withheld and sought."""
+It makes the logs on which the paper's missing effect, the loss in proportion to tension, is withheld and diagnosed."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ PRELOAD = 200.0  # N, of the cables in all runs; reconstructed: printed for the 
 BRANCHES = ("a1", "a2", "b11", "b12", "b21", "b22", "c1", "c2")
 VISCOUS_READINGS = {  # c_m is printed as 10.319 "mNm/s", which is no viscous unit; N*m*s/rad
     "A": 10.319e-3,  # mN*m*s/rad
-    "B": 10.319e-3 * 60.0 / (1000.0 * 2.0 * np.pi),  # mN*m per 1000 turns a minute
+    "B": 10.319e-3 * 60.0 / (1000.0 * 2.0 * np.pi),  # mN*m per 1000 turns per minute
     "C": 10.319e-6,  # uN*m*s/rad
 }
 
@@ -58,7 +58,7 @@ class Constants:
 
     @property
     def p(self) -> float:
-        """Pitch of the screw, m a turn."""
+        """Pitch of the screw, m per turn."""
         return 2.0 * np.pi * self.N_s
 
     @property
@@ -83,7 +83,7 @@ class Constants:
 
 def constants(*, viscous_reading: str = "A") -> Constants:
     """The printed constants. `viscous_reading`: what the misprinted unit of c_m means, "A" mN*m*s/rad, "B" mN*m per
-    1000 turns a minute, "C" uN*m*s/rad; A is doubtful, since it asks 4.8 N*m at full speed (S2 Table I).
+    1000 turns per minute, "C" uN*m*s/rad; A is doubtful, since it asks 4.8 N*m at full speed (S2 Table I).
 
     Raises ParameterError for another reading."""
     if viscous_reading not in VISCOUS_READINGS:

@@ -92,7 +92,7 @@ def _identified(of: Constants, found: dict[str, Estimate]) -> list[Row]:
 
 
 def _splits(of: Constants) -> list[Row]:
-    """What of eq. 11 is friction."""
+    """The friction in eq. 11."""
     at = np.array([-0.8, -0.1, 0.1, 0.4, 0.8])
     printed = ((21.9, 29.0, 30.0, 42.1, 57.8), (-69.4, -33.0, -31.6, -36.7, -43.2))
     rows = []

@@ -1,4 +1,4 @@
-"""Energy balance of the free joint: what the printed sign and factor of eq. 5 would do."""
+"""Energy balance of the free joint, with the corrected and with the printed sign and factor of eq. 5."""
 
 from __future__ import annotations
 

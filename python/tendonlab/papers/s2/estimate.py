@@ -1,4 +1,4 @@
-"""What an identification of S2 gives: values with 95 % intervals by Student t, as in Table II."""
+"""Result of an identification of S2: values with 95 % intervals by Student t, as in Table II."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CONFIDENCE = 0.95
 class Estimate:
     """`values` and `half_widths` of their 95 % intervals by name, SI; `covariance` in the same order; `residual_sd` in
     the unit of what was fitted. `condition`: of the scaled regressors; `validation_error`: RMS error on samples that
-    were not fitted, as a share of their range (NRMSE); `warnings`: what makes the numbers doubtful, in words."""
+    were not fitted, as a share of their range (NRMSE); `warnings`: reasons to doubt the numbers."""
 
     values: Mapping[str, float]
     half_widths: Mapping[str, float]

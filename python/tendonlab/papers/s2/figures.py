@@ -43,7 +43,7 @@ def draw_gear(ax: Axes, points: pd.DataFrame, fit: Estimate, printed: Constants)
 
 
 def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequence[Axes]:
-    """Fig. 10: force of one cable, measured and estimated, and what is left, against time; on two axes."""
+    """Fig. 10: force of one cable, measured and estimated, and the residual, against time; on two axes."""
     estimated = fit["F_0"] + fit["K"] * ramps["elongation"] + fit["c"] * ramps["rate"]
     axes[0].plot(ramps.index, ramps["force"], ".", ms=1.5, color=INK, label="measured (synthetic)")
     axes[0].plot(ramps.index, estimated, color=BLUE, lw=1.0, label="estimated")
@@ -80,7 +80,7 @@ def draw_branches(
 
 
 def draw_split(ax: Axes, of: Constants, parts: Sequence[Mapping[str, np.ndarray]], theta: np.ndarray) -> Axes:
-    """What of eq. 11 is friction (full) and what only changes with the angle (dashed), for both cables."""
+    """Friction in eq. 11 (full) and the part that only changes with the angle (dashed), for both cables."""
     for part, colour, name in zip(parts, (BLUE, RED), ("cable 1", "cable 2"), strict=True):
         ax.plot(theta, part["friction"], color=colour, label=f"{name}, friction")
         ax.plot(theta, part["common"], color=colour, ls="--", lw=1.1, label=f"{name}, common part")

@@ -124,7 +124,7 @@ def fit_bushing(
 
 
 def split_common_friction(branches: Mapping[str, float], theta: ArrayLike, tension: float) -> dict[str, Array]:
-    """What of eq. 11 is friction: {"common": half the sum of both senses, "friction": half their difference}, N.
+    """The friction in eq. 11: {"common": half the sum of both senses, "friction": half their difference}, N.
 
     The common part is a tension that changes with theta, no friction; the paper's b is therefore not twice a friction
     coefficient. `theta`, rad, any shape; `tension`: T, N."""
@@ -174,7 +174,7 @@ def _sizes(design: Array) -> Array:
 
 
 def _speed_warnings(rate: Array, condition: float) -> tuple[str, ...]:
-    """Is there anything to tell c v from F_0 by?"""
+    """A warning where the rate varies too little to separate c v from F_0."""
     top = float(np.max(np.abs(rate)))
     levels = np.unique(np.round(rate / (0.1 * top))) if top > 0 else np.zeros(1)
     if len(levels) >= 3 or (levels.min() < 0 < levels.max()):

@@ -1,4 +1,5 @@
-"""How strong a signal goes with the angle of a shaft: what turns with the screw is a line there, whatever its speed."""
+"""How strong a signal goes with the angle of a shaft: a disturbance that turns with the screw is one line, at any
+speed."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from tendonlab.errors import ParameterError
 
 
 def order_spectrum(turns: ArrayLike, values: ArrayLike, *, highest: float = 4.0, num_orders: int = 400) -> pd.Series:
-    """Amplitude of `values`, in their unit, by order, cycles a turn, from 0 to `highest`.
+    """Amplitude of `values`, in their unit, by order, cycles per turn, from 0 to `highest`.
 
     `turns` of the shaft at the samples, shape (n,), any spacing, either way. A signal a sin(2 pi k turns) shows a at
     order k; lines are as narrow as one cycle in all turns covered. Source: S2 Fig. 12c.

@@ -55,8 +55,8 @@ def system(of: Constants) -> System:
 
 
 def nut_input(of: Constants, of_reference: Reference, *, every: int = 1) -> pd.DataFrame:
-    """What nuts controlled by velocity are asked to do: `actuator_velocity` = r cos(theta) theta' of the reference,
-    m/s, by time "t", s; `every`: one sample of so many."""
+    """Command of velocity-controlled nuts: `actuator_velocity` = r cos(theta) theta' of the reference,
+    m/s, by time "t", s; `every`: keep one sample of this many."""
     asked = of.r * np.cos(of_reference.angle) * of_reference.velocity
     index = pd.Index(of_reference.time[::every], name="t")
     return pd.DataFrame({"actuator_velocity": asked[::every]}, index=index)
@@ -98,8 +98,8 @@ def write_dataset(
     seed: int = 0,
 ) -> Dataset:
     """Write logs of a twin with the withheld effects `ripple`, `hold` and `toe_tension`, N, into `folder` as a dataset
-    whose simulator has none of them, and load it. `repeated`: one run is made twice, which tells noise from what the
-    simulator lacks."""
+    whose simulator has none of them, and load it. `repeated`: one run is recorded twice, which separates noise from
+    model error."""
     into = Path(folder)
     into.mkdir(parents=True, exist_ok=True)
     lines = ['format = "tendonlab-dataset/1"', 'name = "s2-twin"']

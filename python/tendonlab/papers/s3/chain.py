@@ -6,8 +6,8 @@
     g = 1 + (mu_s/mu_d - 1) exp(-(v_i/v_s)²)
     F_i = 2 r T_s (exp(-mu_d phi_i) - exp(-mu_d phi_(i+1))),  so that they add up to the model's offset
 
-Friction here acts along the cable while it stretches, so it knows no velocity gate: what the paper's model lacks. It
-shares no law and no stepper with the library. Reconstructed: the paper has a rig, this is not its data."""
+Friction here acts along the cable while the cable stretches, without a velocity gate; the paper's model lacks this.
+The twin shares no law and no stepper with the library. Reconstructed: these are not the data of the paper's rig."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class CompiledRecord:
 
     @classmethod
     def of(cls, record: Record) -> CompiledRecord:
-        """A record ready to be simulated time and again."""
+        """A record, prepared for repeated simulation."""
         system = bowden_pair(paper_parameters(), record=record)
         data = pd.DataFrame({"input_torque": record.log["tau_in"], "input_velocity": DEGREE * record.log["v"]})
         ready = prepare(Experiment(name=record.name, data=data), system, Replay("free"))

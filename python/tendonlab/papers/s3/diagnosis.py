@@ -1,8 +1,8 @@
-"""S3's own gap on its twin: runs in which something happens that the paper's model lacks, as datasets to diagnose.
+"""S3's own gap on its twin, as datasets to diagnose: runs with an effect that the paper's model lacks.
 
 The friction coefficient of every case is the one that the paper's model gets from theta_6 at 54 kg, 15 N·m and 0.1 Hz,
 where neither slack nor superposition shows. The twin's nodes and drive have viscous friction too, and its drive has
-inertia; the paper's model knows of neither. The simulators here have a term for viscous friction, whose value nobody
+inertia; the paper's model has neither. The simulators here have a term for viscous friction, whose value nobody
 knows, or are the paper's model as it is printed."""
 
 from __future__ import annotations

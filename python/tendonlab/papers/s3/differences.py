@@ -19,7 +19,7 @@ Row = tuple[str, str, float, float, float]  # quantity, where from, printed, com
 
 
 def differences(fit: Fit, recovered: Fit, records: Mapping[int, Record]) -> pd.DataFrame:
-    """One row a number: printed, computed, their difference, what is tolerated, and whether it is within.
+    """One row per number: printed, computed, difference, tolerance, and whether the difference is within.
 
     `fit`: of the twin's theta_6. `recovered`: of data that obey the paper's law exactly. `records`: sines of the twin
     at 54 kg by shape number, with 2, 7 and 8."""

@@ -98,9 +98,9 @@ def fit_gradient(
     """Least squares with exact derivatives through the recursion of S3 eq. 21, on logarithms, while the gate hardens.
 
     `free`: which of mu_d, mu_s, v_s, v_thres move; mu_s keeps its ratio to mu_d where it is not free, since data hardly
-    tell (see `weakness`). The gate's steepness s_v v_thres² grows from `softest` by `factor` a stage up to `steepest`;
-    `path` has every stage. The last gate is a step; `polish` then searches the free numbers without derivatives.
-    Raises ParameterError for an unknown name in `free`."""
+    tell (see `weakness`). The gate's steepness s_v v_thres² grows from `softest` by `factor` per stage up to
+    `steepest`; `path` has every stage. The last gate is a step; `polish` then searches the free numbers without
+    derivatives. Raises ParameterError for an unknown name in `free`."""
     unknown = [name for name in free if name not in NAMES[:4]]
     if unknown or not free:
         raise ParameterError(f"free = {tuple(free)}: expected some of {', '.join(NAMES[:4])}")

@@ -1,4 +1,4 @@
-"""The data set of S3 Table I: one load-cell reading and four trajectories a group; and as a library dataset."""
+"""The data set of S3 Table I: one load-cell reading and four trajectories per group; and as a library dataset."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Record:
         return float(pretension_from_load_cells(self.load_in, self.load_out))
 
     def predict(self, p: FrictionParameters, *, y0: float = 0.0, rig: Rig | None = None) -> Prediction:
-        """What the paper's model makes of the logged input and velocity."""
+        """Prediction of the paper's model for the logged input and velocity."""
         return predict_log(self.log, shape=self.shape, T_s=self.pretension, p=p, y0=y0, rig=rig)
 
     def mse(self, p: FrictionParameters) -> float:

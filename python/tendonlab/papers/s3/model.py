@@ -54,7 +54,7 @@ def predict(
 ) -> Prediction:
     """Output torque of the pair under `tau_in`, N·m, (n,), and velocity `v` of motor A in `velocity_unit`, (n,).
 
-    `shape` of the sheaths, `T_s` N a cable, `p` the friction law, `dt` s between samples, `y0` N·m the output before
+    `shape` of the sheaths, `T_s` N per cable, `p` the friction law, `dt` s between samples, `y0` N·m the output before
     the first. `gate_period`, s: the sample period for which the gate's share of eq. 21 is meant; over another one it is
     raised to the power dt/gate_period. `release` < 1: an open gate shuts only at that share of its threshold, against
     chatter by noise of the velocity (better still, low-pass it: `tendonlab.procedures.lowpass`).

@@ -1,4 +1,4 @@
-"""What the sliding phase of a record says by itself, before any model of the dead zone (S3 Fig. 5)."""
+"""Slope and offset of the sliding phase of a record, without a model of the dead zone (S3 Fig. 5)."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ PROFILES = ("decaying", "uniform")
 
 @dataclass(frozen=True, kw_only=True)
 class TransmissionCoefficients:
-    """What friction makes of the pair at one friction coefficient (`of` computes it).
+    """Tension ratios and gains of the pair at one friction coefficient (`of` computes them).
 
     `alpha`, `beta`: exp(-mu theta), exp(mu theta) (S3 eq. 8, 9). `Psi_alpha`, `Psi_beta`: integrals of exp(-mu phi) and
     exp(mu phi) along the sheath, m (eq. 11, 14). `K_in`: output per input torque, 1; r_out/r_in for every shape that is
@@ -49,7 +49,7 @@ class TransmissionCoefficients:
         r_out: float,
         pretension_profile: str = "decaying",
     ) -> TransmissionCoefficients:
-        """Those of sheaths of `shape` at friction coefficient `mu` and pretension `T_s`, N a cable; radii in m.
+        """Those of sheaths of `shape` at friction coefficient `mu` and pretension `T_s`, N per cable; radii in m.
 
         `pretension_profile`: "decaying", the paper's C_TO = T_s Psi_alpha (eq. 12), or "uniform", C_TO = T_s L.
         Raises ParameterError for a negative or infinite number or an unknown profile."""
@@ -65,7 +65,7 @@ class TransmissionCoefficients:
         return np.asarray(self.K_in * np.asarray(tau_in, dtype=float) + _sign(direction) * self.offset)
 
     def tensions(self, tau_in: float, *, direction: int = 1) -> tuple[float, float, float, float]:
-        """T_1 … T_4, N; see eq. 8, 9, 15-17. A negative one says that the tendon is slack (`slack_torque`)."""
+        """T_1 … T_4, N; see eq. 8, 9, 15-17. A negative tension means that the tendon is slack (`slack_torque`)."""
         one, two, three, four = self.pair.tensions(tau_in, _sign(direction) < 0)
         return one, two, three, four
 

@@ -1,4 +1,4 @@
-"""What a notebook ends with: printed and computed values side by side."""
+"""The last table of the notebook: printed and computed values side by side."""
 
 from __future__ import annotations
 

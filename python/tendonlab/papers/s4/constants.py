@@ -1,4 +1,4 @@
-"""What S4 states of its mechanism, contacts and rig (Tables II and III, section V), in its notation."""
+"""Numbers that S4 states for its mechanism, contacts and rig (Tables II and III, section V), in its notation."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def identified() -> Identified:
 
 
 def _numbers(name: str) -> dict[str, float]:
-    """Values of a table by what its first columns call them."""
+    """Values of a table by the names in its first columns."""
     rows = table(name)
     names = rows["symbol"] if "symbol" in rows else rows["quantity"]
     return dict(zip(names, rows["value"].astype(float).tolist(), strict=True))

@@ -1,4 +1,5 @@
-"""What the paper leaves as in Table III: sigma_0, sigma_1, sigma_2, v_s and mu_s fitted to whole runs of the rig."""
+"""The values that the paper keeps from Table III (sigma_0, sigma_1, sigma_2, v_s, mu_s), fitted to whole runs of the
+rig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Stiffness and friction coefficients from measured tensions, as on the rig of S4 section V; what distorts them."""
+"""Stiffness and friction coefficients from measured tensions, as on the rig of S4 section V; effects that distort
+them."""
 
 from __future__ import annotations
 

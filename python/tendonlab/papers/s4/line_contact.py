@@ -1,4 +1,4 @@
-"""One contact of a cable with a pulley, from the library's laws: what S4 (27) to (29) say, alone and fed by a log."""
+"""One contact of a cable with a pulley, from the library's laws: S4 eqs (27) to (29), alone and driven by a log."""
 
 from __future__ import annotations
 

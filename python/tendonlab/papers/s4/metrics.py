@@ -1,4 +1,4 @@
-"""What S4 reads off Figs 8 and 9: the error and how it changes at a reversal, loop width, ranges of tensions."""
+"""Numbers read off S4 Figs 8 and 9: the error and how it changes at a reversal, loop width, ranges of tensions."""
 
 from __future__ import annotations
 
