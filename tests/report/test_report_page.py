@@ -11,9 +11,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tendonlab.errors import ParameterError
 from tendonlab.report import effects_table
 from tendonlab.report.diagnosis import Diagnosis, SideTable
 from tendonlab.report.figures import LARGEST_SVG, embed
+from tendonlab.report.write import prepare_folder
 
 NASTY = "<script>alert(\"rig\")</script> & $x$ 'quoted'"
 
@@ -78,6 +80,24 @@ def test_files_written(with_effect: Diagnosis, tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "a" / "b").iterdir()} == figures | {"report.html", "report.json"}
     with_effect.report(tmp_path / "bare", figures=False)
     assert {path.name for path in (tmp_path / "bare").iterdir()} == {"report.html", "report.json"}
+
+
+def test_a_report_that_fails_leaves_the_earlier_one(with_effect: Diagnosis, tmp_path: Path) -> None:
+    with_effect.report(tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(ParameterError, match="complex"):
+        replace(with_effect, seed=7, details={"odd": 2j}).report(tmp_path)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_folder_is_made_before_there_is_anything_to_write(tmp_path: Path) -> None:
+    assert prepare_folder(tmp_path / "a" / "b").is_dir()
+    assert list((tmp_path / "a" / "b").iterdir()) == []
+    (tmp_path / "file").touch()
+    with pytest.raises(ParameterError, match="file' is a file: expected a folder"):
+        prepare_folder(tmp_path / "file")
+    with pytest.raises(OSError, match="file"):
+        prepare_folder(tmp_path / "file" / "below")
 
 
 def test_the_same_diagnosis_gives_the_same_bytes(with_effect: Diagnosis, tmp_path: Path) -> None:
