@@ -1,4 +1,4 @@
-"""What the papers do to their logs before anything is fitted, as functions for one's own logs.
+"""Treatments of logs before a fit, as the papers do them, for your own logs.
 
 Arrays in, arrays or frames out; SI units, time in s. Bad input raises ParameterError."""
 

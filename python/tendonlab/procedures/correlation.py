@@ -1,4 +1,4 @@
-"""By how much one signal lags another."""
+"""Lag of one signal behind another."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from tendonlab.errors import ParameterError
 
 
 def correlation_shift(time: ArrayLike, a: ArrayLike, b: ArrayLike, *, longest: float) -> float:
-    """Time, s, by which `b` comes after `a` (negative: before it), at most `longest` s, where both are most alike.
+    """Time, s, by which `b` comes after `a` (negative: before it), at most `longest` s, where their correlation is
+    largest.
 
     Shapes (n,), evenly sampled; units of `a` and `b` do not matter. For each shift the correlation coefficient of the
     samples that overlap is taken; a parabola through the greatest and its neighbours places it between samples. A
-    periodic signal is alike at every period: keep `longest` below half of it.
+    periodic signal repeats at every period: keep `longest` below half a period.
 
     Raises ParameterError: `longest` below one sampling interval or above half the record, uneven sampling, a constant
     signal, or a correlation that still grows at `longest`."""

@@ -1,4 +1,4 @@
-"""Bounded least squares from many points: what `global_search` is made of."""
+"""Bounded least squares from many points: the parts of `global_search`."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Box:
             raise ParameterError(f"upper has {len(above)} values: expected {len(below)}, as many as lower")
         chosen = np.zeros(len(below), dtype=bool) if log is None else np.asarray(log, dtype=bool)
         if chosen.shape != below.shape:
-            raise ParameterError(f"log has shape {chosen.shape}: expected {below.shape}, one truth value a parameter")
+            raise ParameterError(f"log has shape {chosen.shape}: expected {below.shape}, one truth value per parameter")
         for k in range(len(below)):
             if not below[k] < above[k]:
                 raise ParameterError(f"upper[{k}] = {above[k]}: expected a bound above lower[{k}] = {below[k]}")
@@ -179,7 +179,7 @@ def rank_of(jacobian: np.ndarray) -> int:
 
 def sd_of(jacobian: np.ndarray, residual: np.ndarray, fixed: np.ndarray) -> np.ndarray:
     """Sd of each coordinate for independent noise of the residual's size: NaN where `fixed`, infinite where the data do
-    not tell it from others, or are no more than the coordinates."""
+    not separate it from others, or are not more than the coordinates."""
     sd = np.full(jacobian.shape[1], math.nan)
     if not np.isfinite(jacobian).all() or fixed.all():
         return sd

@@ -74,7 +74,7 @@ def reactive_torque(
     """Motor torque, N·m, shape (n,), that the reaction of two load cells shows: (F1 + F2) lever  (S0 eq. 6).
 
     `force_1`, `force_2`: readings, shape (n,), both positive in the sense of the couple, in the unit that `calibration`
-    expects (N by default); a pair of calibrations is for a pair of cells. `lever`, m: from either cell to the shaft's
+    expects (N by default); a pair of calibrations gives one to each cell. `lever`, m: from either cell to the shaft's
     axis (half the distance between the cells). `time`, s, only where creep is corrected.
 
     Raises ParameterError: unequal lengths, numbers that are not finite, a lever not above 0, creep without time."""

@@ -36,10 +36,10 @@ def steady_averages(
     five sd of its noise); a share `trim` is cut at each end. Rest is no plateau. Columns: `start`, `end`, s; `speed`
     and `torque`, means; `sd` of the torque's samples about their mean; `num_samples`.
 
-    With `position` two columns more split the torque into what changes sign with the motion and what does not: half the
-    difference and half the sum of a plateau and the one nearest in time that passes the same positions at the opposite
-    speed, each averaged over the positions that both pass. `friction` keeps the sign of `speed`, `gravity` is the rest.
-    This takes friction to be the same in both directions. S1 section 5.
+    With `position`, two more columns split the torque into a part that changes sign with the motion and the rest: half
+    the difference and half the sum of a plateau and the one nearest in time that passes the same positions at the
+    opposite speed, each averaged over the positions that both pass. `friction` keeps the sign of `speed`, `gravity` is
+    the rest. This takes friction to be the same in both directions. S1 section 5.
 
     Raises ParameterError: uneven sampling, unequal lengths, no plateau, `tolerance` not in (0, 1), `shortest` below 10
     samples or above the record, `trim` not in [0, 0.5), and, with `position`, a plateau without an opposite one."""
