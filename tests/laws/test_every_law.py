@@ -20,7 +20,7 @@ velocities = arrays(float, 16, elements=floats(-10, 10))
 def test_it_says_what_it_is(law: Any) -> None:
     one = law.law
     assert one.name == law.name
-    for text in (one.equation, one.source, one.summary):
+    for text in (one.noun, one.equation, one.source, one.summary):
         assert len(text) > 2
     assert one.roles
     assert law.amplitudes, "no value switches it off"

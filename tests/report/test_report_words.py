@@ -8,22 +8,46 @@ import pytest
 
 from tendonlab.report import numbers, words
 from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.simulation.catalog import kinds, system_info
 
 
 @pytest.mark.parametrize(
-    ("name", "expected"),
+    ("kind", "name", "expected"),
     [
-        ("joint:stribeck", "Stribeck friction at the joint"),
-        ("sensor.joint_angle:delay", "delay in the joint angle sensor"),
-        ("contact:load_dependence", "load-dependent friction at the pulley contact"),
-        ("load:offset", "constant disturbance on the load"),
-        ("actuation:offset", "constant offset in the actuation"),
-        ("spring_box:odd_law", "odd law in the spring box"),
-        ("backlash", "backlash"),
+        ("two_inertia", "joint:stribeck", "Stribeck friction at the joint"),
+        ("two_inertia", "contact:load_dependence", "load-dependent friction at the pulley contact"),
+        ("two_inertia", "sensor.joint_angle:delay", "delay of the joint angle sensor"),
+        ("two_inertia", "load:offset", "constant disturbance on the load"),
+        ("two_inertia", "actuation:offset", "constant offset of the actuator"),
+        ("cable_joint", "gear:ripple", "motion ripple in the gear"),
+        ("cable_joint", "bushing_1:coulomb", "Coulomb friction in bushing 1"),
+        ("cable_joint", "stiction:hold", "hold by stiction in the guides"),
+        ("bowden_pair", "actuation:drive_inertia", "inertia of the drive"),
+        ("ccsrm", "ends:compliance", "compliance in the cable ends"),
+        ("tendon_routing", "load:scale_error", "scale error of the load"),
+        ("spring_box", "spring:odd_law", "odd law in the spring"),
+        ("two_inertia", "a wrong mass", "a wrong mass"),
     ],
 )
-def test_effects_in_words(name: str, expected: str) -> None:
-    assert words.phrase(name) == expected
+def test_effects_in_words(kind: str, name: str, expected: str) -> None:
+    assert words.phrase(name, kind) == expected
+
+
+def test_every_effect_of_a_system_has_a_phrase_of_its_own() -> None:
+    for kind in kinds():
+        info = system_info(kind)
+        phrases = [effect.phrase for effect in info.effects]
+        assert len(set(phrases)) == len(phrases), kind
+        assert not any("_" in phrase or "  " in phrase for phrase in phrases)
+        assert all(effect.phrase == f"{effect.noun} {info.places[effect.element]}" for effect in info.effects)
+
+
+def test_elements_in_words() -> None:
+    assert words.element_words("contact", "two_inertia") == "pulley contact"
+    assert words.element_words("contact", "two_inertia", article=True) == "the pulley contact"
+    assert words.element_words("bushing_1", "cable_joint", article=True) == "bushing 1"
+    assert words.element_words("sensor.joint_angle", "two_inertia") == "joint angle sensor"
+    assert words.element_words("spring_box", "unknown", article=True) == "the spring box"
 
 
 def test_small_words() -> None:

@@ -10,8 +10,8 @@ namespace tendonlab::actuation {
 /// J = 0 switches it off. No memory. The system takes the rate from its input; by itself the law changes no signal.
 template <class T>
 struct DriveInertia {
-  static constexpr std::string_view name = "drive_inertia", source = "balance of a drive, left out in S3",
-                                    equation = "u - J dv/dt",
+  static constexpr std::string_view name = "drive_inertia", noun = "inertia",
+                                    source = "balance of a drive, left out in S3", equation = "u - J dv/dt",
                                     summary = "inertia of the drive, whose torque was logged before it";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T inertia;

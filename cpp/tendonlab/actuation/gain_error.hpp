@@ -9,7 +9,8 @@ namespace tendonlab::actuation {
 /// u: effort by the torque constant, N (N·m). e: relative error, 1. e = 0 switches it off.
 template <class T>
 struct GainError {
-  static constexpr std::string_view name = "gain_error", source = "EMPS benchmark, drive gain", equation = "(1 + e) u",
+  static constexpr std::string_view name = "gain_error", noun = "gain error", source = "EMPS benchmark, drive gain",
+                                    equation = "(1 + e) u",
                                     summary = "actuation gain error: the effort is not what the torque constant says";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T error;

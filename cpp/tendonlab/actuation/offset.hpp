@@ -9,7 +9,8 @@ namespace tendonlab::actuation {
 /// u: effort, N (N·m). u_0 = 0 switches it off.
 template <class T>
 struct Offset {
-  static constexpr std::string_view name = "offset", source = "EMPS benchmark, first model", equation = "u + u_0",
+  static constexpr std::string_view name = "offset", noun = "constant offset", source = "EMPS benchmark, first model",
+                                    equation = "u + u_0",
                                     summary = "actuation offset: an effort that is there at zero command";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T offset;

@@ -10,7 +10,7 @@ namespace tendonlab::actuation {
 /// against the motion, N·m, so that the torque of the motor is k i. k = 0 switches it off.
 template <class T>
 struct Winding {
-  static constexpr std::string_view name = "winding", source = "S2 eq. 1",
+  static constexpr std::string_view name = "winding", noun = "current dynamics", source = "S2 eq. 1",
                                     equation = "-k i, i' = (V - R i - k omega) / L",
                                     summary = "winding of a motor: resistance, inductance and back-EMF";
   static constexpr unsigned roles = role::memory, sees = sees_velocity | sees_load;

@@ -258,6 +258,7 @@ struct BindLaw {
           sentence(p.meaning, ", ", both_units(p.dimension)).c_str());
     });
     law.attr("name") = std::string(L::name);
+    law.attr("noun") = std::string(L::noun);
     law.attr("equation") = std::string(L::equation);
     law.attr("source") = std::string(L::source);
     law.attr("summary") = std::string(L::summary);

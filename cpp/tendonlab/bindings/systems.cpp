@@ -22,9 +22,9 @@ py::dict parameter_info(const ParameterInfo& p) {
 }
 py::dict effect_info(const EffectInfo& e) {
   return py::dict(py::arg("name") = e.name, py::arg("element") = e.element, py::arg("effect") = e.effect,
-                  py::arg("equation") = e.equation, py::arg("source") = e.source, py::arg("summary") = e.summary,
-                  py::arg("parameters") = e.parameters, py::arg("needs") = e.needs, py::arg("roles") = e.roles,
-                  py::arg("structural") = e.structural);
+                  py::arg("noun") = e.noun, py::arg("phrase") = e.phrase, py::arg("equation") = e.equation,
+                  py::arg("source") = e.source, py::arg("summary") = e.summary, py::arg("parameters") = e.parameters,
+                  py::arg("needs") = e.needs, py::arg("roles") = e.roles, py::arg("structural") = e.structural);
 }
 template <class Items, class F>
 py::list listed(const Items& items, F make) {
@@ -38,7 +38,8 @@ py::dict system_info(const std::string& kind) {
       py::arg("kind") = s.kind, py::arg("equation") = s.equation, py::arg("dof") = s.dof,
       py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
       py::arg("parameters") = listed(s.parameters, parameter_info), py::arg("effects") = listed(s.effects, effect_info),
-      py::arg("elements") = listed(s.elements, [](const ElementInfo& e) { return py::make_tuple(e.name, e.axis); }),
+      py::arg("elements") =
+          listed(s.elements, [](const ElementInfo& e) { return py::make_tuple(e.name, e.axis, e.place); }),
       py::arg("ports") =
           listed(s.ports, [](const PortInfo& p) { return py::make_tuple(p.name, p.element, words(p.load).name); }),
       py::arg("nominal") = s.nominal, py::arg("commanded") = s.commanded, py::arg("sampled") = s.sampled,

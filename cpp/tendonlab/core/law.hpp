@@ -25,6 +25,9 @@ enum Sees : unsigned {
   sees_direction = 32
 };
 
+/// Every law states its `name` (in code), its `noun` (what reports call the effect, without the place: "Stribeck
+/// friction"), `equation`, `source` and `summary`.
+
 /// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
 /// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of
 /// other laws goes, and nothing by itself; whole: all the friction of its slot, a simulator's own choice and no term

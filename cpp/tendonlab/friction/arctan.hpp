@@ -10,7 +10,8 @@ namespace tendonlab::friction {
 /// nothing sticks. alpha = 0 switches it off. No memory.
 template <class T>
 struct Arctan {
-  static constexpr std::string_view name = "arctan", source = "S2 eq. 12", equation = "alpha arctan(beta v)",
+  static constexpr std::string_view name = "arctan", noun = "arctangent friction", source = "S2 eq. 12",
+                                    equation = "alpha arctan(beta v)",
                                     summary = "arctangent friction: smooth through zero, level at speed";
   static constexpr unsigned roles = role::force, sees = sees_velocity;
   T scale, slope;

@@ -10,7 +10,8 @@ namespace tendonlab::friction {
 /// N·s/m (N·m·s/rad). While it slides, a alone looks like a constant offset. a = b = 0 switches it off. No memory.
 template <class T>
 struct Asymmetry {
-  static constexpr std::string_view name = "asymmetry", source = "EMPS benchmark, second model",
+  static constexpr std::string_view name = "asymmetry", noun = "direction-dependent friction",
+                                    source = "EMPS benchmark, second model",
                                     equation = "g (1 + a sgn(v)) sgn(v) + b |v|",
                                     summary =
                                         "direction-dependent friction: level and viscous friction differ by direction";

@@ -12,7 +12,8 @@ namespace tendonlab::friction {
 /// that inputs drive keeps at rest the direction of its last motion. a = b = 0 switches it off. No memory.
 template <class T>
 struct BushingBranches {
-  static constexpr std::string_view name = "bushing_branches", source = "S2 eq. 11",
+  static constexpr std::string_view name = "bushing_branches", noun = "direction- and side-dependent friction",
+                                    source = "S2 eq. 11",
                                     equation = "a_i + b_ij T sin((theta - c_i)/2), i by sgn(v), j by theta < c_i",
                                     summary = "bushing: force of a cable by wrap angle, direction and side";
   static constexpr unsigned roles = role::force, sees = sees_wrap | sees_load | sees_direction;

@@ -9,7 +9,8 @@ namespace tendonlab::friction {
 /// T: tension that `load` names, N, on the slack side. theta_w: wrap angle, rad. mu = 0 switches it off. No memory.
 template <class T>
 struct BushingCapstan {
-  static constexpr std::string_view name = "bushing_capstan", source = "Euler and Eytelwein, beside S2 eq. 10",
+  static constexpr std::string_view name = "bushing_capstan", noun = "capstan friction",
+                                    source = "Euler and Eytelwein, beside S2 eq. 10",
                                     equation = "|T| (exp(mu |theta_w|) - 1) sgn(v)",
                                     summary = "bushing: friction that grows along the wrap";
   static constexpr unsigned roles = role::level, sees = sees_load | sees_wrap;

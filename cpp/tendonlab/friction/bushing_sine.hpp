@@ -10,7 +10,7 @@ namespace tendonlab::friction {
 /// mu = 0 switches it off. No memory.
 template <class T>
 struct BushingSine {
-  static constexpr std::string_view name = "bushing_sine", source = "S2 eq. 10",
+  static constexpr std::string_view name = "bushing_sine", noun = "equal-tension wrap friction", source = "S2 eq. 10",
                                     equation = "2 mu |T sin(theta_w/2)| sgn(v)",
                                     summary = "bushing: friction by the reaction on the bisector of the wrap";
   static constexpr unsigned roles = role::level, sees = sees_load | sees_wrap;

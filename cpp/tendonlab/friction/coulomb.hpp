@@ -9,7 +9,8 @@ namespace tendonlab::friction {
 /// g: level, N (N·m). Sticks at rest up to this level. F_c = 0 switches it off. No memory.
 template <class T>
 struct Coulomb {
-  static constexpr std::string_view name = "coulomb", source = "S1 eq. 12", equation = "F_c sgn(v)",
+  static constexpr std::string_view name = "coulomb", noun = "Coulomb friction", source = "S1 eq. 12",
+                                    equation = "F_c sgn(v)",
                                     summary = "Coulomb (kinetic) friction: a constant level that opposes sliding";
   static constexpr unsigned roles = role::level, sees = sees_nothing;
   T coulomb;

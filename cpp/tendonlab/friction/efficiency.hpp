@@ -11,7 +11,7 @@ namespace tendonlab::friction {
 /// that the efficiency driven back is 2 - 1/eta; r l >= 1: the gear locks. l = 0 switches it off. No memory.
 template <class T>
 struct Efficiency {
-  static constexpr std::string_view name = "efficiency", source = "S1 eqs 9, 10",
+  static constexpr std::string_view name = "efficiency", noun = "power-proportional loss", source = "S1 eqs 9, 10",
                                     equation = "l |F_load| sgn(v), times r where v F_load < 0",
                                     summary = "gear efficiency: loss in proportion to the power passed on";
   static constexpr unsigned roles = role::level, sees = sees_load;

@@ -14,7 +14,8 @@ namespace tendonlab::friction {
 /// off. No memory.
 template <class T>
 struct LoadAndRatio {
-  static constexpr std::string_view name = "load_and_ratio", source = "S0 eq. 11",
+  static constexpr std::string_view name = "load_and_ratio", noun = "load- and ratio-dependent friction",
+                                    source = "S0 eq. 11",
                                     equation =
                                         "(F_c (1 + L) w^delta + (F_s + F_c (1 + L) w^beta) exp(-|v/v_s|^alpha) + F_v "
                                         "v_0 ((N^2 + 1)/N^2 w + (w/L)^gamma)) sgn(v), w = |v|/v_0",

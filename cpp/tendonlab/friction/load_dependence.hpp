@@ -11,7 +11,8 @@ namespace tendonlab::friction {
 /// also acts where no Coulomb friction does; c = 0 switches it off. No memory.
 template <class T>
 struct LoadDependence {
-  static constexpr std::string_view name = "load_dependence", source = "S1 eq. 11", equation = "c |F_load| sgn(v)",
+  static constexpr std::string_view name = "load_dependence", noun = "load-dependent friction", source = "S1 eq. 11",
+                                    equation = "c |F_load| sgn(v)",
                                     summary =
                                         "load-dependent friction: dry friction in proportion to the effort carried";
   static constexpr unsigned roles = role::level, sees = sees_load;

@@ -10,7 +10,7 @@ namespace tendonlab::friction {
 /// p: share of the dry friction that the bristle takes over, 1: all; p = 0 switches it off. Memory: z.
 template <class T>
 struct Presliding {
-  static constexpr std::string_view name = "presliding", source = "S4 eq. 27",
+  static constexpr std::string_view name = "presliding", noun = "presliding friction", source = "S4 eq. 27",
                                     equation =
                                         "(1 - p) g sgn(v) + p (sigma_0 z + sigma_1 z'), z' = v - sigma_0 |v| z / g",
                                     summary = "presliding: a bristle replaces the jump of dry friction at reversal";

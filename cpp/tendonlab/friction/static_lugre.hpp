@@ -11,7 +11,7 @@ namespace tendonlab::friction {
 /// 7). Stands for the whole dry friction of its slot; F_c = F_s = 0 switches it off. No memory.
 template <class T>
 struct StaticLugre {
-  static constexpr std::string_view name = "static_lugre", source = "S0 eq. 3",
+  static constexpr std::string_view name = "static_lugre", noun = "static LuGre friction", source = "S0 eq. 3",
                                     equation = "(F_c + (F_s - F_c) exp(-|v/v_s|^alpha)) sgn(v)",
                                     summary = "static LuGre curve: dry friction from static to kinetic with speed";
   static constexpr unsigned roles = role::level | role::whole, sees = sees_velocity;

@@ -10,7 +10,8 @@ namespace tendonlab::friction {
 /// Adds to `coulomb` in its slot; F_e = 0 switches it off. No memory.
 template <class T>
 struct Stribeck {
-  static constexpr std::string_view name = "stribeck", source = "S4 eq. 27", equation = "F_e exp(-(v/v_s)^2) sgn(v)",
+  static constexpr std::string_view name = "stribeck", noun = "Stribeck friction", source = "S4 eq. 27",
+                                    equation = "F_e exp(-(v/v_s)^2) sgn(v)",
                                     summary = "Stribeck friction: extra resistance at low speed";
   static constexpr unsigned roles = role::level | role::refines, sees = sees_velocity;
   T excess;

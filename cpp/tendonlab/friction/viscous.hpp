@@ -9,8 +9,8 @@ namespace tendonlab::friction {
 /// v: sliding velocity, m/s (rad/s). F: N (N·m), against v. F_v = 0 switches it off. No memory.
 template <class T>
 struct Viscous {
-  static constexpr std::string_view name = "viscous", source = "S4 eq. 27", equation = "F_v v",
-                                    summary = "viscous friction: in proportion to speed";
+  static constexpr std::string_view name = "viscous", noun = "viscous friction", source = "S4 eq. 27",
+                                    equation = "F_v v", summary = "viscous friction: in proportion to speed";
   static constexpr unsigned roles = role::force, sees = sees_velocity;
   T viscous;
 

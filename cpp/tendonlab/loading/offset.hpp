@@ -10,8 +10,9 @@ namespace tendonlab::loading {
 /// it from an offset of the actuator; behind an elastic cable the stretch does.
 template <class T>
 struct Offset {
-  static constexpr std::string_view name = "offset", source = "constant term of the equation of motion",
-                                    equation = "F + F_0", summary = "load offset: a constant disturbance on the joint";
+  static constexpr std::string_view name = "offset", noun = "constant disturbance",
+                                    source = "constant term of the equation of motion", equation = "F + F_0",
+                                    summary = "load offset: a constant disturbance on the joint";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T offset;
 

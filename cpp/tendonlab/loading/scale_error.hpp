@@ -9,8 +9,8 @@ namespace tendonlab::loading {
 /// F: effort known to act on the joint, N (N·m). e: relative error, 1. e = 0 switches it off.
 template <class T>
 struct ScaleError {
-  static constexpr std::string_view name = "scale_error", source = "S1 sec. IV: gravity is held as if it were known",
-                                    equation = "(1 + e) F",
+  static constexpr std::string_view name = "scale_error", noun = "scale error",
+                                    source = "S1 sec. IV: gravity is held as if it were known", equation = "(1 + e) F",
                                     summary =
                                         "load scale error: the known load is wrong by a factor, as with a wrong "
                                         "mass";

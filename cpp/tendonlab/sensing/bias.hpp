@@ -9,8 +9,8 @@ namespace tendonlab::sensing {
 /// y: reading, unit of its signal. y_0 = 0 switches it off.
 template <class T>
 struct Bias {
-  static constexpr std::string_view name = "bias", source = "S0, calibration of the load cells", equation = "y + y_0",
-                                    summary = "sensor bias: a constant added to the reading";
+  static constexpr std::string_view name = "bias", noun = "bias", source = "S0, calibration of the load cells",
+                                    equation = "y + y_0", summary = "sensor bias: a constant added to the reading";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T added;
 

@@ -9,7 +9,7 @@ namespace tendonlab::sensing {
 /// d: delay, s. Whoever holds the signal's past applies it. d = 0 switches it off.
 template <class T>
 struct Delay {
-  static constexpr std::string_view name = "delay", source = "S2 fig. 12", equation = "y(t - d)",
+  static constexpr std::string_view name = "delay", noun = "delay", source = "S2 fig. 12", equation = "y(t - d)",
                                     summary = "sensor delay: the reading is old";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T late;

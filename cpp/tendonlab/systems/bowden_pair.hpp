@@ -29,6 +29,7 @@ struct BowdenPair {
       {{"input_torque", "torque of the drive", Dimension::effort, true, Between::linear},
        {"input_velocity", "velocity of the drive", Dimension::flow, true, Between::linear}}};
   static constexpr std::array<Output, 1> outputs{{{"output_torque", "torque on the load", Dimension::effort, -1}}};
+  static constexpr std::array<Place, 1> places{{{"actuation", "of the drive"}}};
   static constexpr std::array<std::string_view, 0> structural{};
   static constexpr std::array<std::string_view, 1> nominal{"sheath:capstan"};
 

@@ -57,6 +57,7 @@ struct CableJoint {
        {"cable_force_1", "force of cable 1 at its nut", Dimension::force, -1},
        {"cable_force_2", "force of cable 2 at its nut", Dimension::force, -1},
        {"motor_velocity", "velocity of the motor", Dimension::angular_speed, -1}}};
+  static constexpr std::array<Place, 2> places{{{"winding", "in the motor winding"}, {"stiction", "in the guides"}}};
   static constexpr std::array<std::string_view, 2> structural{"winding:winding", "cable:taut_compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:viscous", "gear:arctan", "bushing_1:bushing_branches",
                                                            "bushing_2:bushing_branches"};

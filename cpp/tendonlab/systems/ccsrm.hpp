@@ -24,6 +24,7 @@ struct CcsrmTables : CcsrmCables<T> {
                                                   Cables::sections[3],
                                                   Cables::sections[4],
                                                   Cables::sections[5]}};
+  static constexpr std::array<Place, 1> places{{{"ends", "in the cable ends"}}};
 
   using Contact = typename Cables::Contact;
   using Ends = Slot<T, Laws<transmission::EndCompliance>>;

@@ -20,6 +20,7 @@ struct FrictionMap {
       {{"speed", "speed of the input shaft", Dimension::flow, true, Between::linear}}};
   static constexpr std::array<Output, 1> outputs{
       {{"friction_torque", "friction on the side of the input", Dimension::effort, -1}}};
+  static constexpr std::array<Place, 1> places{{{"contact", "at the contact"}}};
   static constexpr std::array<std::string_view, 0> structural{};
   static constexpr std::array<std::string_view, 1> nominal{"contact:load_and_ratio"};
 

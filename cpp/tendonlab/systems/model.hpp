@@ -16,7 +16,9 @@ struct ParameterInfo {
   std::string meaning;
 };
 struct EffectInfo {
-  std::string name, element, effect, equation, source, summary;
+  std::string name, element, effect;
+  std::string noun, phrase;  ///< "Stribeck friction", "Stribeck friction at the joint"
+  std::string equation, source, summary;
   std::vector<std::string> parameters;
   std::vector<std::string> needs;  ///< effects whose parameters it shares
   unsigned roles;
@@ -30,9 +32,9 @@ struct SignalInfo {
   std::string between, unless;  ///< inputs only
   bool missed;                  ///< inputs only
 };
-/// A place where laws sit; `axis` is empty where it is the system's.
+/// A place where laws sit, in words "at the joint"; `axis` is empty where it is the system's.
 struct ElementInfo {
-  std::string name, axis;
+  std::string name, axis, place;
 };
 struct PortInfo {
   std::string name, element;

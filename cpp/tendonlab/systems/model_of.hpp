@@ -58,7 +58,7 @@ SystemInfo describe() {
         {std::string(port.name.empty() ? port.element : port.name), std::string(port.element), port.load});
   for (const auto& name : System::nominal) info.nominal.emplace_back(name);
   systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) {
-    info.elements.push_back({element, systems::axis_of<System>(element)});
+    info.elements.push_back({element, systems::axis_of<System>(element), systems::place_words<System>(element)});
   });
   systems::for_each_parameter_of(system, [&](const systems::Holder& of, const auto& p, auto&) {
     if (!systems::place_of(info.parameters, of, p.name))
@@ -72,6 +72,8 @@ SystemInfo describe() {
     EffectInfo effect{name,
                       element,
                       std::string(Law::name),
+                      std::string(Law::noun),
+                      std::string(Law::noun) + " " + systems::place_words<System>(element),
                       std::string(Law::equation),
                       std::string(Law::source),
                       std::string(Law::summary),

@@ -8,6 +8,7 @@
 #include "tendonlab/friction/all.hpp"
 #include "tendonlab/loading/all.hpp"
 #include "tendonlab/sensing/all.hpp"
+#include "tendonlab/systems/places.hpp"
 #include "tendonlab/transmission/all.hpp"
 
 namespace tendonlab::systems {

@@ -49,6 +49,7 @@ struct TendonRouting : tendon::Entries<T> {
                                                   {"motor_torque_2", "torque of motor 2", Dimension::torque, -1},
                                                   {"motor_torque_3", "torque of motor 3", Dimension::torque, -1},
                                                   {"motor_torque_4", "torque of motor 4", Dimension::torque, -1}}};
+  static constexpr std::array<Place, 1> places{{{"load", "of the load"}}};
   static constexpr std::array<std::string_view, 0> structural{};
   /// Losses of the parameters are no effects. Effects that refine dry friction ask for `cable:coulomb`, perhaps of 0.
   static constexpr std::array<std::string_view, 0> nominal{};

@@ -12,8 +12,8 @@ namespace tendonlab::transmission {
 /// the level. a: half the relative difference, 1; a = 0 switches it off. No memory.
 template <class T>
 struct Asymmetry {
-  static constexpr std::string_view name = "asymmetry", source = "S4 section V, identified coefficients",
-                                    equation = "mu (1 + a sgn(v))",
+  static constexpr std::string_view name = "asymmetry", noun = "direction-dependent friction",
+                                    source = "S4 section V, identified coefficients", equation = "mu (1 + a sgn(v))",
                                     summary = "direction-dependent friction coefficient of a contact";
   static constexpr std::string_view shares_with = "capstan";
   static constexpr unsigned roles = role::factor | role::refines, sees = sees_wrap;

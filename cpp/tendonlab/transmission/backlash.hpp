@@ -10,7 +10,8 @@ namespace tendonlab::transmission {
 /// `side` is a mode of the stepper.
 template <class T>
 struct Backlash {
-  static constexpr std::string_view name = "backlash", source = "Nordin and Gutman, Automatica 38 (2002), dead zone",
+  static constexpr std::string_view name = "backlash", noun = "backlash",
+                                    source = "Nordin and Gutman, Automatica 38 (2002), dead zone",
                                     equation = "x - b sgn(x)/2 where |x| > b/2, else 0",
                                     summary = "backlash: play in the motion, whatever the load";
   static constexpr unsigned roles = role::motion, sees = sees_position;

@@ -12,7 +12,7 @@ namespace tendonlab::transmission {
 /// switches it off. No memory. The system knows the torque's rate.
 template <class T>
 struct CableStretch {
-  static constexpr std::string_view name = "compliance", source = "S3 eq. 7, 17",
+  static constexpr std::string_view name = "compliance", noun = "compliance", source = "S3 eq. 7, 17",
                                     equation = "v - a L/(2 EA r^2) dtau/dt",
                                     summary = "compliance: part of the drive's motion only stretches the cables";
   static constexpr unsigned roles = role::motion, sees = sees_velocity;

@@ -11,7 +11,7 @@ namespace tendonlab::transmission {
 /// cable. mu = eps = 0 switches it off. No memory.
 template <class T>
 struct Capstan {
-  static constexpr std::string_view name = "capstan", source = "S4 eq. 28",
+  static constexpr std::string_view name = "capstan", noun = "capstan friction", source = "S4 eq. 28",
                                     equation = "|T (1 - exp(-mu theta_w sgn(v)))| + eps",
                                     summary = "capstan: tension lost along the wrap of a cable on a pulley";
   static constexpr unsigned roles = role::level, sees = sees_load | sees_wrap;

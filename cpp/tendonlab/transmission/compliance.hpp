@@ -9,8 +9,8 @@ namespace tendonlab::transmission {
 /// x: stretch, m (rad), v its rate, m/s (rad/s). F: N (N·m). No memory.
 template <class T>
 struct Compliance {
-  static constexpr std::string_view name = "compliance", source = "S2 eq. 3", equation = "k x + c v",
-                                    summary = "compliance: spring and damper in parallel";
+  static constexpr std::string_view name = "compliance", noun = "compliance", source = "S2 eq. 3",
+                                    equation = "k x + c v", summary = "compliance: spring and damper in parallel";
   static constexpr unsigned roles = role::force, sees = sees_position | sees_velocity;
   T stiffness, damping;
 

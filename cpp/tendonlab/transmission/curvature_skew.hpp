@@ -10,7 +10,7 @@ namespace tendonlab::transmission {
 /// the ratio of radii. k = 0 switches it off. No memory.
 template <class T>
 struct CurvatureSkew {
-  static constexpr std::string_view name = "curvature_skew", source = "S3 eq. 11, 14",
+  static constexpr std::string_view name = "curvature_skew", noun = "uneven curvature", source = "S3 eq. 11, 14",
                                     equation = "kappa(s) = theta/L (1 + k (2 s/L - 1))",
                                     summary = "uneven curvature of a sheath: changes the gain of the pair";
   static constexpr unsigned roles = role::motion | role::refines, sees = sees_wrap;

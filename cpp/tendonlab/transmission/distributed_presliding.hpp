@@ -15,7 +15,8 @@ namespace tendonlab::transmission {
 /// gate. a = 0 switches it off. Memory: y and m, kept by the system.
 template <class T>
 struct DistributedPresliding {
-  static constexpr std::string_view name = "distributed_presliding", source = "S3 sec. 2, S4 play operator, in torque",
+  static constexpr std::string_view name = "distributed_presliding", noun = "distributed presliding friction",
+                                    source = "S3 sec. 2, S4 play operator, in torque",
                                     equation =
                                         "(1 - a) tau + a y, y += s d, s dm = d + w (1 - exp(-d/rho)), w = g - s (m - "
                                         "y)",

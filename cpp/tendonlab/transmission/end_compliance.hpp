@@ -10,8 +10,8 @@ namespace tendonlab::transmission {
 /// without the slips that follow from c, so this law only carries the number. No memory.
 template <class T>
 struct EndCompliance {
-  static constexpr std::string_view name = "compliance", source = "S4 section VI, outlook", equation = "x / c",
-                                    summary = "compliance of the end sections of the cables";
+  static constexpr std::string_view name = "compliance", noun = "compliance", source = "S4 section VI, outlook",
+                                    equation = "x / c", summary = "compliance of the end sections of the cables";
   static constexpr unsigned roles = role::force, sees = sees_position;
   Divisor<T> compliance;
 

@@ -11,7 +11,8 @@ namespace tendonlab::transmission {
 /// at the guide, N (N·m). h: share of it, 1: all. h = 0 switches it off. No memory of its own: the senses are modes.
 template <class T>
 struct Hold {
-  static constexpr std::string_view name = "hold", source = "S2 fig. 12a, b", equation = "h (F_held - F_moving)",
+  static constexpr std::string_view name = "hold", noun = "hold by stiction", source = "S2 fig. 12a, b",
+                                    equation = "h (F_held - F_moving)",
                                     summary = "hold by stiction: at rest friction keeps the sense of the last move";
   static constexpr unsigned roles = role::force, sees = sees_load | sees_direction;
   T share;

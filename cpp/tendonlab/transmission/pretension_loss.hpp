@@ -10,7 +10,8 @@ namespace tendonlab::transmission {
 /// No memory. Changes what the later laws see, friction and slack alike.
 template <class T>
 struct PretensionLoss {
-  static constexpr std::string_view name = "pretension_loss", source = "S3 eq. 12, T_s", equation = "T_s (1 - c)",
+  static constexpr std::string_view name = "pretension_loss", noun = "loss of pretension", source = "S3 eq. 12, T_s",
+                                    equation = "T_s (1 - c)",
                                     summary = "pretension loss: a share of the pretension is missing";
   static constexpr unsigned roles = role::motion | role::refines, sees = sees_preload;
   T pretension_loss;

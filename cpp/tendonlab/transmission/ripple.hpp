@@ -14,7 +14,7 @@ namespace tendonlab::transmission {
 /// s = c = 0 switches it off. No memory.
 template <class T>
 struct Ripple {
-  static constexpr std::string_view name = "ripple", source = "S2 fig. 12c",
+  static constexpr std::string_view name = "ripple", noun = "motion ripple", source = "S2 fig. 12c",
                                     equation = "v (1 + s sin(phi) + c cos(phi))",
                                     summary = "gear ripple: the output runs ahead and behind once a turn";
   static constexpr unsigned roles = role::motion, sees = sees_position;

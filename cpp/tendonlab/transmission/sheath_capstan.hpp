@@ -12,7 +12,7 @@ namespace tendonlab::transmission {
 /// mu_d = mu_s = 0 switches it off. No memory.
 template <class T>
 struct SheathCapstan {
-  static constexpr std::string_view name = "capstan", source = "S3 eq. 18, 19",
+  static constexpr std::string_view name = "capstan", noun = "capstan friction", source = "S3 eq. 18, 19",
                                     equation =
                                         "2 r_out T_s (beta - alpha) Psi_a/(Psi_a + Psi_b) sgn(v), alpha = "
                                         "1/beta = exp(-mu theta), mu = mu_d + (mu_s - mu_d) exp(-(v/v_s)^2)",

@@ -10,7 +10,7 @@ namespace tendonlab::transmission {
 /// so that all is on the other one. a = 0 switches it off. No memory.
 template <class T>
 struct Slack {
-  static constexpr std::string_view name = "slack", source = "S3 eq. 15, 17 where T_3 = 0",
+  static constexpr std::string_view name = "slack", noun = "tendon slack", source = "S3 eq. 15, 17 where T_3 = 0",
                                     equation = "g (1 + a max(0, |tau|/(2 r T_s) - 1)) sgn(v)",
                                     summary =
                                         "slack: friction grows with the torque once the returning tendon is loose";

@@ -10,7 +10,7 @@ namespace tendonlab::transmission {
 /// coefficient. p: share of it, 1: all; p = 0 switches it off. No memory.
 template <class T>
 struct Stribeck {
-  static constexpr std::string_view name = "stribeck", source = "S4 eqs 27, 29",
+  static constexpr std::string_view name = "stribeck", noun = "Stribeck friction", source = "S4 eqs 27, 29",
                                     equation = "g (1 + p (mu_s/mu - 1) exp(-(v/v_s)^2)) sgn(v)",
                                     summary = "Stribeck friction: a larger friction coefficient at low speed";
   static constexpr std::string_view shares_with = "capstan";

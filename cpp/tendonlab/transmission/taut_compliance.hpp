@@ -9,7 +9,8 @@ namespace tendonlab::transmission {
 /// x: elongation beyond the preloaded state, m (rad), v its rate. T: preload, N (N·m). No memory.
 template <class T>
 struct TautCompliance {
-  static constexpr std::string_view name = "taut_compliance", source = "S2 eq. 3", equation = "max(0, T + k x + c v)",
+  static constexpr std::string_view name = "taut_compliance", noun = "tension-only compliance", source = "S2 eq. 3",
+                                    equation = "max(0, T + k x + c v)",
                                     summary = "compliance of a pretensioned cable, which goes slack and never pushes";
   static constexpr unsigned roles = role::force, sees = sees_position | sees_velocity;
   T pretension, stiffness, damping;

@@ -14,7 +14,7 @@ namespace tendonlab::transmission {
 /// memory.
 template <class T>
 struct ToeRegion {
-  static constexpr std::string_view name = "toe_region", source = "S2 sec. IV-B.2",
+  static constexpr std::string_view name = "toe_region", noun = "soft toe region", source = "S2 sec. IV-B.2",
                                     equation = "T + k x -> (T + k x + F_s)^2 / 4 F_s below F_s",
                                     summary = "toe region: a cable of fibres is softer below a tension";
   static constexpr std::string_view shares_with = "taut_compliance";

@@ -110,7 +110,8 @@ def _parameters(effect: EffectFinding) -> list[str]:
 
 
 def _open_questions(diagnosis: Diagnosis) -> str:
-    tied = [listing(map(phrase, group), last="or") for group in diagnosis.indistinguishable]
+    groups = ((phrase(name, diagnosis.system) for name in group) for group in diagnosis.indistinguishable)
+    tied = [listing(group, last="or") for group in groups]
     parts = [_items("These data cannot tell apart", tied)]
     if diagnosis.invisible:
         text = listing(diagnosis.invisible)

@@ -154,7 +154,11 @@ def _regimes(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 def _elements(diagnosis: Diagnosis) -> list[tuple[str, float | None]]:
     """(element, probability) of those worth a row; the others are one row without a number of its own."""
     entries = diagnosis.where["elements"]
-    rows = [(words.element_words(e["element"]), e["probability"]) for e in entries if e["probability"] >= _LEAST]
+    rows = [
+        (words.element_words(e["element"], diagnosis.system), e["probability"])
+        for e in entries
+        if e["probability"] >= _LEAST
+    ]
     others = len(entries) - len(rows)
     return rows + ([(f"{others} other element{'s' if others > 1 else ''}", None)] if others else [])
 
@@ -165,7 +169,8 @@ def _where_in_words(diagnosis: Diagnosis) -> str:
     if elements := diagnosis.where["elements"]:
         first = max(elements, key=lambda entry: entry["probability"])
         sure = numbers.probability(first["probability"])
-        parts.append(f"arises most likely in the {words.element_words(first['element'])} (probability {sure})")
+        source = words.element_words(first["element"], diagnosis.system, article=True)
+        parts.append(f"comes most likely from {source} (probability {sure})")
     if signals := diagnosis.where["signals"]:
         first = max(signals, key=lambda entry: entry["share"])
         share = numbers.percent(first["share"])

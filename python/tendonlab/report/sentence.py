@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from tendonlab.report.numbers import percent, probability
@@ -72,14 +73,18 @@ def _effect(diagnosis: Diagnosis) -> str:
     opening = "An unmodelled effect explains" if one else several
     tail = _shrinks(diagnosis, "from_refitted", f"adding {'it' if one else 'them'} shrinks")
     tied = f"{_aside(diagnosis)}{_ties(diagnosis) if one else ''}"
-    return f"{opening} the gap: {listing(map(phrase, names))} {tied}{tail}."
+    return f"{opening} the gap: {_effects(diagnosis, names)} {tied}{tail}."
 
 
 def _ties(diagnosis: Diagnosis) -> str:
     """What the data cannot tell from the one effect that was selected."""
     (chosen,) = diagnosis.selected
     others = [name for group in diagnosis.indistinguishable if chosen in group for name in group if name != chosen]
-    return f", which these data cannot tell from {listing(map(phrase, others), last='or')}" if others else ""
+    return f", which these data cannot tell from {_effects(diagnosis, others, last='or')}" if others else ""
+
+
+def _effects(diagnosis: Diagnosis, names: Iterable[str], *, last: str = "and") -> str:
+    return listing((phrase(name, diagnosis.system) for name in names), last=last)
 
 
 def _unknown(diagnosis: Diagnosis) -> str:
@@ -87,5 +92,5 @@ def _unknown(diagnosis: Diagnosis) -> str:
         return f"A gap remains after tuning that no effect of the library explains {_aside(diagnosis)}."
     are, explain = ("is", "explains") if len(diagnosis.selected) == 1 else ("are", "explain")
     share = "" if diagnosis.explained is None else f" and {explain} {percent(diagnosis.explained)} of the excess error"
-    found = f"{listing(map(phrase, diagnosis.selected))} {are} established{share}"
+    found = f"{_effects(diagnosis, diagnosis.selected)} {are} established{share}"
     return f"The library explains only a part of the gap {_aside(diagnosis)}: {found}, the rest is unknown."

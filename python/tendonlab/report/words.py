@@ -1,4 +1,4 @@
-"""Names of the library in the words of the field: "joint:stribeck" is "Stribeck friction at the joint"."""
+"""Names of the library in the words of a report; what an effect is called stands beside its law, in the catalog."""
 
 from __future__ import annotations
 
@@ -6,50 +6,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from tendonlab.report.numbers import number
+from tendonlab.simulation.catalog import kinds, system_info
 
-EFFECTS = {
-    "coulomb": "Coulomb friction",
-    "viscous": "viscous friction",
-    "stribeck": "Stribeck friction",
-    "viscous_power_law": "viscous friction that is not linear in speed",
-    "presliding": "presliding friction",
-    "asymmetry": "direction-dependent friction",
-    "load_dependence": "load-dependent friction",
-    "position_dependence": "position-dependent friction",
-    "efficiency": "power-proportional loss",
-    "drift": "drifting friction",
-    "compliance": "compliance",
-    "relaxation": "viscoelastic relaxation",
-    "backlash": "backlash",
-    "stiffening": "stiffening",
-    "hysteresis": "hysteresis",
-    "capstan": "capstan friction",
-    "slack": "slack",
-    "eccentricity": "eccentricity",
-    "pretension_loss": "loss of pretension",
-    "offset": "constant offset",
-    "unbalance": "unbalance",
-    "hold": "hold by stiction",
-    "toe_region": "toe region",
-    "ripple": "torque ripple",
-    "gain_error": "gain error",
-    "saturation": "saturation",
-    "deadband": "deadband",
-    "delay": "delay",
-    "lag": "lag",
-    "bias": "bias",
-    "scale_error": "scale error",
-    "quantisation": "quantisation",
-    "filter_lag": "filter lag",
-}
-PLACES = {
-    "motor": "at the motor",
-    "driver": "at the driver",
-    "contact": "at the pulley contact",
-    "joint": "at the joint",
-    "load": "on the load",
-    "stiction": "in the guides",
-}
 VERDICTS = {
     "no_gap": "No gap",
     "parameters_only": "Parameters only",
@@ -74,21 +32,21 @@ def words(name: str) -> str:
     return " ".join(_PROPER.get(part, part) for part in name.replace(".", " ").replace("_", " ").split())
 
 
-def element_words(element: str) -> str:
-    """The noun of an element: "contact" is "pulley contact", "sensor.joint_angle" is "joint angle sensor"."""
-    if element.startswith("sensor."):
-        return f"{words(element.removeprefix('sensor.'))} sensor"
-    return "pulley contact" if element == "contact" else words(element)
+def element_words(element: str, kind: str, *, article: bool = False) -> str:
+    """The noun of an element of the system `kind`: "contact" of a two_inertia is "pulley contact", with its article
+    "the pulley contact"."""
+    places = system_info(kind).places if kind in kinds() else {}
+    place = places.get(element, f"in the {words(element)}")
+    noun = place.partition(" ")[2]
+    return noun if article else noun.removeprefix("the ")
 
 
-def phrase(name: str) -> str:
-    """What `element:effect` is called in a sentence; a name that the table does not have is spelt out."""
-    element, colon, effect = name.rpartition(":")
-    if not colon:
-        return EFFECTS.get(name, words(name))
-    if (element, effect) == ("load", "offset"):
-        return "constant disturbance on the load"
-    return f"{EFFECTS.get(effect, words(effect))} {PLACES.get(element, f'in the {element_words(element)}')}"
+def phrase(name: str, kind: str) -> str:
+    """An effect of the system `kind` in a sentence: "joint:stribeck" is "Stribeck friction at the joint". A name that
+    the catalog does not have is spelt out."""
+    known = {effect.name: effect.phrase for effect in system_info(kind).effects} if kind in kinds() else {}
+    element, _, effect = name.rpartition(":")
+    return known.get(name, f"{words(effect)} in the {words(element)}" if element else words(name))
 
 
 def parameter_words(name: str, *, element: str = "") -> str:

@@ -39,12 +39,15 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Effect:
-    """A law in a place, "joint:stribeck". `structural` ones are part of the system and always on; `needs`: effects
-    whose parameters it shares."""
+    """A law in a place, "joint:stribeck". `phrase`: what reports call it, "Stribeck friction at the joint"; `noun`: the
+    same without the place. `structural` ones are part of the system and always on; `needs`: effects whose parameters it
+    shares."""
 
     name: str
     element: str
     effect: str
+    noun: str
+    phrase: str
     equation: str
     source: str
     summary: str
@@ -87,7 +90,8 @@ class Port:
 class SystemInfo:
     """Everything a system states about itself. `commanded`: input 0 is the command of an actuator; `sampled`: outputs
     follow sample by sample, without a differential equation; `steady`: and no sample depends on another, so that rows
-    need no time; `element_axes`: of elements with an axis of their own."""
+    need no time; `element_axes`: of elements with an axis of their own; `places`: each
+    element in words, "at the joint"."""
 
     kind: str
     equation: str
@@ -98,6 +102,7 @@ class SystemInfo:
     effects: tuple[Effect, ...]
     elements: tuple[str, ...]
     element_axes: dict[str, str]
+    places: dict[str, str]
     ports: tuple[Port, ...]
     default_nominal_effects: tuple[str, ...]
     commanded: bool
@@ -137,8 +142,9 @@ def system_info(kind: str) -> SystemInfo:
         effects=tuple(
             Effect(**{**e, "parameters": tuple(e["parameters"]), "needs": tuple(e["needs"])}) for e in raw["effects"]
         ),
-        elements=tuple(name for name, _ in raw["elements"]),
-        element_axes={name: axis for name, axis in raw["elements"] if axis},
+        elements=tuple(name for name, _, _ in raw["elements"]),
+        element_axes={name: axis for name, axis, _ in raw["elements"] if axis},
+        places={name: place for name, _, place in raw["elements"]},
         ports=tuple(Port(*of) for of in raw["ports"]),
         default_nominal_effects=tuple(raw["nominal"]),
         commanded=raw["commanded"],

@@ -45,7 +45,8 @@ def ranked_effects(diagnosis: Diagnosis, ax: Axes | None = None, *, count: int =
     tidy(ax, grid="x")
     ax.set(xlim=(0.0, 1.12), xlabel="Probability that it is part of the cause", ylabel="Effect")
     ax.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "0.25", "0.5", "0.75", "1"])
-    ax.set_yticks(range(len(shown)), [wrapped(capital(phrase(finding.name)), width=32) for finding in shown])
+    names = [capital(phrase(finding.name, diagnosis.system)) for finding in shown]
+    ax.set_yticks(range(len(shown)), [wrapped(name, width=32) for name in names])
     ax.set_ylim(max(len(shown), 1) - 0.35, -0.5)
     ax.tick_params(axis="y", length=0)
     if not shown:

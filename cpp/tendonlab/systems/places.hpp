@@ -1,0 +1,49 @@
+#pragma once
+// What reports call the elements of a system. An effect is called by its law's noun and its element's place:
+// "Stribeck friction" + "at the joint".
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace tendonlab::systems {
+/// `words`: a preposition and the element, "at the joint"; without the preposition they name the element alone.
+struct Place {
+  std::string_view element, words;
+};
+/// Elements that mean the same in most systems. A system's own `places` come first.
+inline constexpr Place usual_places[] = {{"joint", "at the joint"},
+                                         {"motor", "at the motor"},
+                                         {"contact", "at the pulley contact"},
+                                         {"load", "on the load"},
+                                         {"actuation", "of the actuator"}};
+
+template <class System, class = void>
+struct OwnPlacesOf {
+  static constexpr std::array<Place, 0> list{};
+};
+template <class System>
+struct OwnPlacesOf<System, std::void_t<decltype(System::places)>> {
+  static constexpr auto& list = System::places;
+};
+
+/// "bushing_1" as "bushing 1".
+inline std::string spaced(std::string name) {
+  for (char& c : name)
+    if (c == '_' || c == '.') c = ' ';
+  return name;
+}
+/// The place of an element in words. Elements without a row: "in the gear", "in bushing 1", "of the joint angle
+/// sensor".
+template <class System>
+std::string place_words(const std::string& element) {
+  for (const Place& place : OwnPlacesOf<System>::list)
+    if (place.element == element) return std::string(place.words);
+  for (const Place& place : usual_places)
+    if (place.element == element) return std::string(place.words);
+  constexpr std::string_view sensor = "sensor.";
+  if (element.compare(0, sensor.size(), sensor) == 0)
+    return "of the " + spaced(element.substr(sensor.size())) + " sensor";
+  const bool numbered = '0' <= element.back() && element.back() <= '9';
+  return (numbered ? "in " : "in the ") + spaced(element);
+}
+}  // namespace tendonlab::systems
