@@ -140,11 +140,20 @@ def system_info(kind: str) -> SystemInfo:
             for p in raw["parameters"]
         ),
         effects=tuple(
-            Effect(**{**e, "parameters": tuple(e["parameters"]), "needs": tuple(e["needs"])}) for e in raw["effects"]
+            Effect(
+                **{
+                    "noun": e["effect"],
+                    "phrase": e["name"],
+                    **e,
+                    "parameters": tuple(e["parameters"]),
+                    "needs": tuple(e["needs"]),
+                }
+            )
+            for e in raw["effects"]
         ),
-        elements=tuple(name for name, _, _ in raw["elements"]),
-        element_axes={name: axis for name, axis, _ in raw["elements"] if axis},
-        places={name: place for name, _, place in raw["elements"]},
+        elements=tuple(name for name, *_ in raw["elements"]),
+        element_axes={name: axis for name, axis, *_ in raw["elements"] if axis},
+        places={name: place for name, _, *of in raw["elements"] for place in of},
         ports=tuple(Port(*of) for of in raw["ports"]),
         default_nominal_effects=tuple(raw["nominal"]),
         commanded=raw["commanded"],
