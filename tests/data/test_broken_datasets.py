@@ -1,4 +1,4 @@
-"""Each way to break a dataset is one error that names where it is, what stands there and what was expected."""
+"""Each way to break a dataset is one error that names the place, the value and what was expected."""
 
 import re
 from collections.abc import Callable
@@ -87,7 +87,7 @@ BROKEN: list[tuple[str, Mutation, str]] = [
     (
         "effect twice",
         put("system.nominal_effects", ["joint:viscous", "joint:viscous", "joint:coulomb"]),
-        r"nominal_effects: 'joint:viscous' stands there twice",
+        r"nominal_effects: duplicate 'joint:viscous'",
     ),
     ("unknown parameter", put("system.parameters.inerta", {"value": 1.0}), r"parameters.inerta: .*'inertia'"),
     (
@@ -121,7 +121,7 @@ BROKEN: list[tuple[str, Mutation, str]] = [
     (
         "required input misspelt",
         all_of(drop("signals.motor_torque"), put("signals.motor_torqe", {"column": "u"})),
-        r"signals.motor_torque: is missing.*'motor_torqe' stands there instead",
+        r"signals.motor_torque: is missing.*the file has 'motor_torqe'",
     ),
     (
         "no output",
@@ -148,7 +148,11 @@ BROKEN: list[tuple[str, Mutation, str]] = [
     ("no experiments", put("experiments", []), r"key experiments: is empty"),
     ("experiments no tables", put("experiments", 1), r"key experiments: expected \[\[experiments\]\] tables, got int"),
     ("experiment without file", drop("experiments.0.file"), r"experiments\[0\].file: is missing"),
-    ("experiment name twice", put("experiments.1.name", "one"), r"experiments\[1\].name: 'one' stands there twice"),
+    (
+        "experiment name twice",
+        put("experiments.1.name", "one"),
+        r"experiments\[1\].name: duplicate experiment name 'one'",
+    ),
     ("file missing", put("experiments.0.file", "none.csv"), r"none.csv: no such file"),
     ("file of unknown kind", put("experiments.0.file", "one.xlsx"), r"one.xlsx: unknown kind of file '.xlsx'.*\.csv"),
     ("unknown split", put("experiments.0.split", "training"), r"experiments\[0\].split: 'training'.*'train'"),
@@ -246,7 +250,7 @@ RAW_CSV = [
     ("too many values", b"t,u,q,dq\n0,1,2,3\n1,1,2,3,4\n", r"one.csv, row 3: 5 values; expected 4"),
     ("too many values everywhere", b"t,u,q,dq\n0,1,2,3,4\n1,1,2,3,4\n", r"one.csv, row 2: 5 values; expected 4"),
     ("truncated", b"t,u,q,dq\n0,1,2,3\n1,1,2\n", r"one.csv, row 3: 3 values; expected 4 as in the header"),
-    ("a column twice", b"t,u,q,u,dq\n0,1,2,3,4\n1,1,2,3,4\n", r"row 1, column 'u': stands there 2 times"),
+    ("a column twice", b"t,u,q,u,dq\n0,1,2,3,4\n1,1,2,3,4\n", r"row 1, column 'u': 2 columns of that name"),
     ("blank line", b"t,u,q,dq\n0,1,2,3\n\n1,1,2,3\n", r"one.csv, row 3, column 't': no time"),
     ("semicolons", b"t;u;q;dq\n0;1;2;3\n", r"one.csv, column 't': is missing; expected one of t;u;q;dq"),
     ("not UTF-8", b"t,u,q,dq,\xff\n0,1,2,3,4\n", r"one.csv: byte \d+ is not UTF-8"),

@@ -240,7 +240,7 @@ def test_fits_that_run_at_once_give_the_same_bits() -> None:
 def test_an_experiment_that_did_not_measure_the_motor_is_named() -> None:
     runs = [measure(f"run-{k}", k, seed=1) for k in range(4)]
     blind = replace(runs[2], data=runs[2].data.assign(joint_angle=np.nan))
-    with pytest.raises(DatasetError, match="run-2: joint_angle has no two measured samples"):
+    with pytest.raises(DatasetError, match="run-2: joint_angle: fewer than 2 measured samples"):
         identify(rig(*runs[:2], blind, runs[3]), progress=False)
 
 
@@ -286,7 +286,7 @@ def test_what_cannot_be_identified_is_told(fit: Any) -> None:
         ({"num_starts": 1.5}, "num_starts = 1.5: expected at least 1"),
         ({"effects": "joint:stribeck"}, r"effects = 'joint:stribeck': expected a list, such as \['joint:stribeck'\]"),
         ({"experiments": "run-1"}, "experiments = 'run-1': expected a list"),
-        ({"experiments": ["run-1", "run-2", "run-1"]}, "experiments: 'run-1' stands there twice"),
+        ({"experiments": ["run-1", "run-2", "run-1"]}, "experiments: duplicate 'run-1'"),
     ):
         with pytest.raises(ParameterError, match=told):
             identify(rig(), progress=False, **given)  # type: ignore[arg-type]

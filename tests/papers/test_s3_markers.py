@@ -174,8 +174,11 @@ def test_noise_of_markers_is_smoothed_where_it_is_stated(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("toml", "told"),
     {
-        "beside its angle": (TOML.replace("shape =", "wrap_angle = 3.0, shape ="), "stands beside wrap_angle"),
-        "beside its skew": (TOML.replace("shape =", "curvature_skew = 0.1, shape ="), "stands beside curvature_skew"),
+        "beside its angle": (TOML.replace("shape =", "wrap_angle = 3.0, shape ="), "given together with wrap_angle"),
+        "beside its skew": (
+            TOML.replace("shape =", "curvature_skew = 0.1, shape ="),
+            "given together with curvature_skew",
+        ),
         "no file": (TOML.replace("sheath.csv", "lost.csv"), r"lost\.csv: no such file"),
         "no name": (TOML.replace('"sheath.csv"', "3"), "shape"),
         "a negative noise": (TOML.replace("shape =", "marker_sd = -1.0, shape ="), "marker_sd"),

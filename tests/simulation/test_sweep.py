@@ -133,7 +133,7 @@ def test_ctrl_c_before_anything_is_done_is_ctrl_c() -> None:
         ({"coulomb": [0.1, -0.1]}, r"coulomb = -0.1: expected a value in \[0, inf\) N\*m"),
         ({"coulomb": []}, r"coulomb has shape \(0,\): expected a list of values"),
         ({"coulomb": ["low"]}, r"coulomb = \['low'\]: expected a list of numbers"),
-        ({"coulomb": [0.1, 0.2, 0.1]}, "coulomb: 0.1 stands there twice"),
+        ({"coulomb": [0.1, 0.2, 0.1]}, "coulomb: duplicate 0.1"),
         (["coulomb"], "grid is a list: expected a mapping"),
         ({"coulomb": 0.1}, r"coulomb has shape \(\): expected a list of values"),
     ],

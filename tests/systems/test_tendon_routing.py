@@ -139,8 +139,8 @@ TWO = {"motor_velocity_2": SPEED, "external_torque_2": TORQUE, "motor_torque_2":
 
 def test_an_output_that_no_logged_input_moves_is_refused(tmp_path: Path) -> None:
     told = (
-        r"dataset.toml, key signals.motor_torque_2: depends on no input but motor_velocity_2, external_torque_2, not "
-        r"logged; expected them as signals \(zeros where they are 0\)"
+        "dataset.toml, key signals.motor_torque_2: depends only on inputs that were not logged: "
+        "motor_velocity_2, external_torque_2; log them, or add columns of zeros"
     )
     with pytest.raises(tl.DatasetError, match=told):
         tl.load(write(tmp_path, {**ONE, "motor_torque_2": TORQUE}))
@@ -150,8 +150,8 @@ def test_an_output_that_no_logged_input_moves_is_refused(tmp_path: Path) -> None
 def test_an_input_that_counts_as_zero_is_told_where_an_output_depends_on_it(tmp_path: Path, missing: str) -> None:
     rig = tl.load(write(tmp_path, {**ONE, **{name: of for name, of in TWO.items() if name != missing}}))
     assert silences(rig) == [
-        "dataset.toml, key signals: not logged and counted as 0, which bears on motor_torque_2: "
-        f"{missing}; expected them as signals (zeros where they are 0)"
+        f"dataset.toml, key signals: inputs that were not logged are taken as 0: {missing}; "
+        "outputs that depend on them: motor_torque_2; log them, or add columns of zeros"
     ]
 
 
@@ -169,7 +169,7 @@ def test_a_fit_says_so_and_holds_what_belongs_to_joints_that_are_not_there(tmp_p
     alone = {"motor_velocity_1": SPEED, "motor_torque_1": TORQUE}
     found = tl.identify(tl.load(write(tmp_path, alone, constant_loss_1_0=2.0)), progress=False)
     assert any("external_torque_1" in warning for warning in found.warnings)
-    assert "counted as 0, which bears on" in " ".join(identification_text(found).split())
+    assert "not logged are taken as 0" in " ".join(identification_text(found).split())
     there = {"radius_1_1", "motor_radius_1", "constant_loss_1_0"}
     assert set(found.parameters.index) - set(found.not_informed) <= there
     assert {"motor_radius_2", "radius_2_2", "radius_4_4"} <= set(found.not_informed)

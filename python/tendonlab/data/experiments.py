@@ -61,7 +61,7 @@ def read_experiments(top: Table, context: Context) -> tuple[Experiment, ...]:
         table.allow(KEYS)
         name = table.text("name")
         if name in names:
-            raise table.error("name", f"{name!r} stands there twice; expected a name of its own")
+            raise table.error("name", f"duplicate experiment name {name!r}")
         names.append(name)
     return tuple(_read_experiment(table, split, context) for table, split in zip(tables, splits, strict=True))
 

@@ -1,4 +1,4 @@
-"""Inputs that a rig may lack and that were not logged: told where a measured output depends on them all the same."""
+"""Inputs that a rig may lack and that were not logged: a warning where a measured output depends on them."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ SHARE = 1e-3  # of its typical size that every effect has here: none is left out
 
 
 def absent_inputs(dataset: Dataset) -> list[str]:
-    """A warning for inputs that count as 0 although a measured output depends on them, be it through an effect that may
-    be added. Raises DatasetError for an output that depends on such inputs only."""
+    """A warning for inputs that count as 0 although a measured output depends on them, directly or through an effect
+    that may be added. Raises DatasetError for an output that depends on such inputs only."""
     system, logged = dataset.system(), set(dataset.inputs)
     absent = [s.name for s in system.info.inputs if s.missed and s.name not in logged]
     if not absent:
@@ -28,17 +28,19 @@ def absent_inputs(dataset: Dataset) -> list[str]:
     try:
         missed = {name: _moved(system, [name]) & set(dataset.outputs) for name in absent}
         seen = _moved(system, logged)
-    except (NumericalError, ParameterError):  # of these values; whoever simulates with them is told
+    except (NumericalError, ParameterError):  # of these values; a simulation with them raises it
         return []
-    told = "expected them as signals (zeros where they are 0)"
+    remedy = "log them, or add columns of zeros"
     outputs = [name for name in dataset.outputs if any(name in of for of in missed.values())]
     for name in outputs:
         if name not in seen:
             causes = ", ".join(cause for cause, of in missed.items() if name in of)
-            raise DatasetError(f"{FILE}, key signals.{name}: depends on no input but {causes}, not logged; {told}")
+            raise DatasetError(
+                f"{FILE}, key signals.{name}: depends only on inputs that were not logged: {causes}; {remedy}"
+            )
     causes = ", ".join(cause for cause, of in missed.items() if of)
-    where = f"{FILE}, key signals: not logged and counted as 0, which bears on {', '.join(outputs)}"
-    return [f"{where}: {causes}; {told}"] if causes else []
+    assumed = f"{FILE}, key signals: inputs that were not logged are taken as 0: {causes}"
+    return [f"{assumed}; outputs that depend on them: {', '.join(outputs)}; {remedy}"] if causes else []
 
 
 def _moved(system: System, inputs: Collection[str]) -> set[str]:
@@ -49,8 +51,8 @@ def _moved(system: System, inputs: Collection[str]) -> set[str]:
 
 
 def _outputs(system: System, still: Collection[str]) -> np.ndarray:
-    """Outputs of the simulator with a little of every effect, driven for a second by inputs that have nothing in common
-    but for those that stand `still`."""
+    """Outputs of the simulator with a little of every effect, driven for a second by inputs that have nothing in
+    common, except those that are held `still`."""
     from tendonlab import _core
     from tendonlab.simulation.signals import linear
 

@@ -56,7 +56,7 @@ def assumptions(
     *,
     command_is_effort: bool,
 ) -> list[str]:
-    """A warning for every parameter without a value in the file, be it as a condition of every experiment; a
+    """A warning for every parameter without a value in the file or in the conditions of every experiment; a
     `torque_constant` of 1 goes without saying where the command is an effort."""
     written = set(top.table("system").table("parameters", optional=True).values)
     stated = set.intersection(*(set(experiment.conditions) for experiment in experiments))

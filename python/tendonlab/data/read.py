@@ -84,7 +84,8 @@ def _read_csv(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
         header, num_rows = _csv_shape(path)
         for column in columns:
             if header.count(column) > 1:
-                raise DatasetError(f"{path.name}, row 1, column {column!r}: stands there {header.count(column)} times")
+                problem = f"{header.count(column)} columns of that name"
+                raise DatasetError(f"{path.name}, row 1, column {column!r}: {problem}; expected one")
         # Blank lines stay, so that a row in a message is the line of the file.
         frame = pd.read_csv(
             path,

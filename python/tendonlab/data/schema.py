@@ -78,7 +78,7 @@ class Table:
             raise self.error(key, f"{value!r}: expected an array of strings")
         for index, item in enumerate(value):
             if item in value[:index]:
-                raise self.error(key, f"{item!r} stands there twice")
+                raise self.error(key, f"duplicate {item!r}; expected each name once")
         return tuple(value)
 
     def numbers(self, key: str) -> dict[str, float]:

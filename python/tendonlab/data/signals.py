@@ -117,5 +117,5 @@ def _require_inputs(tables: Table, info: SystemInfo) -> None:
     for signal in info.inputs:
         if signal.required and signal.name not in tables.values and signal.unless not in tables.values:
             match = nearest_name(signal.name, tables.values)
-            hint = f"; {match!r} stands there instead" if match is not None else ""
+            hint = f"; the file has {match!r}" if match is not None else ""
             raise tables.error(signal.name, f"is missing; expected this input, which {info.kind} requires{hint}")

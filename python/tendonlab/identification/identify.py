@@ -50,11 +50,11 @@ def identify(
 
     Output error: simulated against measured outputs, in their noise sd (stated, else estimated), with priors, bounds,
     conditions and additions, and uncertain initial states as nuisances. A parameter on which no measured sample depends
-    is held at its nominal value and told (`not_informed`). `experiments`: names, instead of the training
+    is held at its nominal value and listed (`not_informed`). `experiments`: names, instead of the training
     ones. `num_starts`: the first from the nominal values, the others drawn from the priors with `seed`; the best is
     kept. `tolerance`: relative error of a step of the simulation. Ctrl-C keeps the best so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect or a
-    name that stands twice, NumericalError if no start can be simulated. Source: S2 sec. 4."""
+    duplicate name, NumericalError if no start can be simulated. Source: S2 sec. 4."""
     require_dataset(dataset)
     if not isinstance(num_starts, Integral) or num_starts < 1:
         raise ParameterError(f"num_starts = {num_starts!r}: expected at least 1, a whole number")
@@ -76,7 +76,7 @@ def _names(what: str, given: Sequence[str]) -> tuple[str, ...]:
         raise ParameterError(f"{what} = {given!r}: expected a list, such as [{given!r}]")
     twice = [name for k, name in enumerate(given) if name in given[:k]]
     if twice:
-        raise ParameterError(f"{what}: {twice[0]!r} stands there twice; expected each name once")
+        raise ParameterError(f"{what}: duplicate {twice[0]!r}; expected each name once")
     return tuple(given)
 
 

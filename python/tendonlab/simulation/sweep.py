@@ -88,7 +88,7 @@ def _axis(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
         raise ParameterError(f"{name} has shape {axis.shape}: expected a list of values, shape (n,), n > 0")
     found, times = np.unique(axis, return_counts=True)
     if (times > 1).any():
-        raise ParameterError(f"{name}: {found[times > 1][0]:g} stands there twice; expected each value once")
+        raise ParameterError(f"{name}: duplicate {found[times > 1][0]:g}; expected each value once")
     return axis
 
 
