@@ -1,4 +1,4 @@
-"""What the rig is asked to do: joint reference angles of ten experiments, rad, as a session with breaks between
+"""The commanded motion: joint reference angles of ten experiments, rad, as a session with breaks between
 them.
 """
 

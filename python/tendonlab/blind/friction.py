@@ -7,8 +7,7 @@ joint.
 
 With presliding a LuGre bristle replaces the dry part: z' = v - sigma0 |v| z / level, F = sigma0 z + sigma1 z'. A
 lane whose `form` is not 0 uses another functional form of its effect, so that a diagnosis with the laws above meets
-a world that is only like them. Written for the twins alone: nothing here is shared with the library that is being
-tested.
+a world that resembles them only. Nothing here is shared with the library under test.
 """
 
 from __future__ import annotations

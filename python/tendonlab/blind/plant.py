@@ -36,7 +36,7 @@ class Controller:
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """What n lanes do. `reference`: motor angle, rad, (num_samples, n), or the command itself, N*m, where there is
+    """Inputs of n lanes. `reference`: motor angle, rad, (num_samples, n), or the command itself, N*m, where there is
     no controller.
 
     `num_settle` first samples are not logged. `noise`: added to the readings, (3, num_samples, n); `resolution`: (3,

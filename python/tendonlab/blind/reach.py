@@ -1,4 +1,4 @@
-"""What the diagnosis could open: a verdict given with the truth at hand checks nothing."""
+"""Files that the diagnosis could open: a verdict given with the truth at hand checks nothing."""
 
 from __future__ import annotations
 
@@ -20,9 +20,8 @@ def refuse_truth(*folders: Path) -> None:
     """Raise ValueError where a file anywhere below one of `folders` holds a truth.
 
     That is a file with "sealed" in its name or in that of a folder on the way to it, and one that begins like what
-    `draw` or `score` write, whatever its name; links are followed. Of the rest, what is closed to this process is
-    passed over, for it is closed to the diagnosis too. Raises ValueError as well beyond MOST_ENTRIES files and folders.
-    """
+    `draw` or `score` write, whatever its name; links are followed. Files that this process cannot open are passed over,
+    because the diagnosis cannot open them either. Raises ValueError as well beyond MOST_ENTRIES files and folders."""
     for folder in folders:
         for count, path in enumerate(_below(folder), 1):
             if count > MOST_ENTRIES:

@@ -59,10 +59,10 @@ COLOUR = (0.995, 0.99, 0.97)  # AR1 coefficient
 
 @dataclass(frozen=True, kw_only=True)
 class Rig:
-    """Everything about a case but the amplitude of its effect. `effect` is "" for none; `form` 0 is the documented
+    """A case, except for the amplitude of its effect. `effect` is "" for none; `form` 0 is the documented
     form.
 
-    `truth`: the rig without the effect. `shape`: the drawn numbers that fix the effect but for its amplitude.
+    `truth`: the rig without the effect. `shape`: the drawn numbers that fix the effect, except for its amplitude.
     `noise`: factor on the floor. `kind`: "effect", "none" or "parameters_only". `loop`: kp, kd, limit. `outputs`:
     those that were measured. `has_bounded_error`: nominal values are 10 to 20 % off, not drawn from a normal.
     """

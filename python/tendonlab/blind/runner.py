@@ -28,7 +28,7 @@ def run(cases: Path | str, out: Path | str, *, jobs: int = 1, progress: bool = T
     """Diagnose all cases into `out`/<id>, skipping those that have a report, and return `out`/verdicts.json.
 
     A case that fails is recorded there as "failed" with the last line it wrote. Raises ValueError where `cases` holds
-    no dataset, or where a truth lies below `cases`, beside it or below `out`, see `refuse_truth`.
+    no dataset, or where a truth lies below `cases`, next to `cases` or below `out`, see `refuse_truth`.
     """
     cases, out = Path(cases).resolve(), Path(out).resolve()
     folders = sorted(path.parent for path in cases.glob("*/dataset.toml"))

@@ -1,4 +1,4 @@
-"""Open the truth and compare: what share of the blind cases the diagnosis got right, by kind and by strength."""
+"""Open the truth and compare: the share of blind cases that the diagnosis got right, by kind and by strength."""
 
 from __future__ import annotations
 
