@@ -1,6 +1,9 @@
-"""What all tests share: no display, the measured data where they lie beside the repository, one run of the demo."""
+"""What all tests share: no display, measured data where they lie beside the repository, diagnoses computed once, a
+budget of CPU time per test."""
 
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,6 +11,8 @@ import matplotlib
 import pytest
 from matplotlib import pyplot as plt
 
+import budget
+import diagnoses
 from twin import TwinDiagnosis, run_demo
 
 matplotlib.use("Agg")
@@ -15,6 +20,33 @@ matplotlib.use("Agg")
 _MEASURED = Path(__file__).resolve().parents[2] / "shared" / "data"
 if _MEASURED.is_dir():
     os.environ.setdefault("TENDONLAB_DATA", str(_MEASURED))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """The process that starts the workers makes the folder of shared diagnoses; the workers inherit its name."""
+    if not hasattr(config, "workerinput"):
+        os.environ[diagnoses.FOLDER] = tempfile.mkdtemp(prefix="tendonlab-diagnoses-")
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """All tests run in a process per processor; tests that are named on the command line run in this process."""
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    return min(len(os.sched_getaffinity(0)), 4) if whole else 0
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):
+        shutil.rmtree(os.environ.pop(diagnoses.FOLDER), ignore_errors=True)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    """A test that takes more CPU time than its budget fails."""
+    before = budget.cpu_seconds()
+    yield
+    told = budget.excess(item, budget.cpu_seconds() - before)
+    if told:
+        pytest.fail(told)
 
 
 @pytest.fixture(autouse=True)

@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from diagnoses import HOOK
 from twin import TwinDiagnosis
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -22,12 +23,13 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", TEXT, re.S)
 
 
+@pytest.mark.cpu(15)
 def test_the_tour_runs_as_written(tmp_path: Path, twin_diagnosis: TwinDiagnosis) -> None:
     """In a process of its own, next to a `data` folder as in a clone; the diagnosis of the demo is reused."""
     (tmp_path / "data").symlink_to(ROOT / "data")
     (code,) = blocks("python")
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", twin_diagnosis.reuse + code],
+        [sys.executable, "-W", "error", "-c", HOOK + code],
         cwd=tmp_path,
         env={**os.environ, "MPLBACKEND": "Agg"},
         capture_output=True,

@@ -116,6 +116,7 @@ def test_identify_adds_effects(capsys: Printed, tiny: Path) -> None:
     assert "actuation_offset" in out
 
 
+@pytest.mark.cpu(10)
 def test_diagnose_says_the_verdict_and_writes_the_report(tiny: Path, tmp_path: Path) -> None:
     """The tiny rig lacks nothing but good parameter values."""
     done = run("diagnose", tiny, "--out", "report", "--no-figures", "--seed", "3", cwd=tmp_path)

@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow
+
 
 def test_coulomb_friction_is_named_first_and_then_its_dependence_on_direction(emps: Any) -> None:
     _, found = emps

@@ -13,6 +13,7 @@ from tendonlab.fitting import noise
 from tendonlab.fitting.fitted import Fitter
 
 
+@pytest.mark.cpu(10)
 def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, twin_case: Any) -> None:
     full = fitter.fit(twin_case.system)
     others = [i for k, i in enumerate(twin_case.train) if k != 2]

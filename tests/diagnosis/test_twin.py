@@ -35,6 +35,7 @@ def test_parameters_of_the_effect_are_near_the_truth(twin_diagnosis: TwinDiagnos
         assert value["value"] == pytest.approx(truth["truth"][f"joint_{own}"], rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_gap_shrinks_as_it_does_for_one_who_knows_the_effect(
     twin_diagnosis: TwinDiagnosis, truth: dict[str, Any]
 ) -> None:
@@ -54,12 +55,14 @@ def test_probabilities_are_probabilities(twin_diagnosis: TwinDiagnosis) -> None:
     assert all(math.isfinite(v) for row in found.gap.values() for v in row.values())
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_the_simulator_is_right(tmp_path: Path) -> None:
     found = tl.diagnose(tl.load(make_twin(tmp_path / "rig", kind="none")), progress=False)
     assert found.verdict == "no_gap"
     assert found.selected == ()
 
 
+@pytest.mark.slow
 def test_no_effect_is_found_where_parameters_are_off(tmp_path: Path) -> None:
     found = tl.diagnose(tl.load(make_twin(tmp_path / "rig", kind="parameters_only")), progress=False)
     assert found.verdict == "parameters_only"

@@ -30,6 +30,7 @@ def test_where_runs_repeat_they_decide_and_not_the_plain_floor() -> None:
     assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"
 
 
+@pytest.mark.cpu(10)
 def test_without_repeats_a_missing_effect_is_not_called_a_matter_of_parameters() -> None:
     """The bundled rig lacks Stribeck friction; a library that holds only the bias of a sensor cannot explain it."""
     rig = tl.load(bundled())

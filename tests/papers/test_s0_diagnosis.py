@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tendonlab as tl
+from diagnoses import diagnose
 from tendonlab.papers import s0
 from tendonlab.papers.s0 import experiments
 
@@ -19,7 +20,7 @@ def rig(transmission: str) -> tl.Dataset:
 def test_the_withheld_load_is_the_cause_that_is_found(transmission: str) -> None:
     """The law of the library adds as much at every speed, the twin mostly near 16 rad/s: so part of the gap must stay,
     and the verdict must say so."""
-    why = tl.diagnose(rig(transmission), progress=False)
+    why = diagnose(rig(transmission))
     assert why.selected == ("contact:load_dependence",)
     assert (why.effects[0].element, why.effects[0].effect) == ("contact", "load_dependence")
     assert why.effects[0].probability > 0.8
@@ -68,6 +69,6 @@ def test_where_load_does_not_matter_it_is_not_named() -> None:
 
     signals = {**of.signals, "friction_torque": replace(of.signals["friction_torque"], noise_sd=2e-3)}
     blind = replace(of, experiments=tuple(without_load(e) for e in of), signals=signals)
-    why = tl.diagnose(blind, progress=False)
+    why = diagnose(blind)
     assert why.selected == ()
     assert why.verdict in ("no_gap", "parameters_only")

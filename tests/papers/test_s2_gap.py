@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tendonlab as tl
+from diagnoses import diagnose
 from tendonlab.errors import ParameterError
 from tendonlab.papers import s2
 
@@ -15,7 +16,7 @@ RIG = s2.constants()
 @pytest.fixture(scope="module")
 def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> tl.Diagnosis:
     rig = s2.write_dataset(tmp_path_factory.mktemp("ripple"), RIG, ripple=0.1)
-    return tl.diagnose(rig, progress=False)
+    return diagnose(rig)
 
 
 def test_the_ripple_is_selected(diagnosis: tl.Diagnosis) -> None:
@@ -71,7 +72,7 @@ def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path
     """Whatever keeps the joint from creeping back holds the sense: stiction of the guides, and dry friction of the
     joint. Without repeats these logs cannot tell, and the diagnosis says so, and what would."""
     rig = s2.write_dataset(tmp_path, RIG, hold=True)
-    found = tl.diagnose(rig, library=HOLDS, progress=False)
+    found = diagnose(rig, library=HOLDS)
     assert found.verdict == "effect"
     assert list(found.selected) == ["stiction:hold"]
     assert found.indistinguishable == (("stiction:hold", "joint:coulomb"),)
@@ -82,8 +83,8 @@ def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path
 
 
 def test_a_run_made_twice_tells_a_hold_from_friction_of_the_joint(tmp_path: Path) -> None:
-    rig = s2.write_dataset(tmp_path, RIG, hold=True, repeated=True, seed=1)
-    found = tl.diagnose(rig, library=HOLDS, progress=False)
+    rig = s2.write_dataset(tmp_path, RIG, hold=True, repeated=True)
+    found = diagnose(rig, library=HOLDS)
     assert found.verdict == "effect"
     assert list(found.selected) == ["stiction:hold"]
     assert not found.indistinguishable
@@ -94,7 +95,7 @@ def test_cables_that_are_softer_at_low_tension_are_told_from_everything(tmp_path
     """G4: the joint hangs, preloaded to half of where the toe ends; Table II knows the cables above it only. That one
     run is made twice tells the noise from an error of 0.1 mrad."""
     rig = s2.write_dataset(tmp_path, RIG.with_(phi=-np.pi / 2.0, T=100.0), toe_tension=200.0, repeated=True)
-    found = tl.diagnose(rig, progress=False)
+    found = diagnose(rig)
     assert found.verdict == "effect"
     assert list(found.selected) == ["cable:toe_region"]
     assert not found.indistinguishable

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import tendonlab as tl
+from diagnoses import diagnose
 from tendonlab.papers import s4
 from tendonlab.report.diagnosis import Diagnosis
 
@@ -16,11 +17,11 @@ KEPT = ("static_friction_coefficient", "stribeck_velocity", "bristle_stiffness",
 
 def diagnosed(folder: Path, of: s4.Case, *, knows_direction: bool) -> Diagnosis:
     rig = s4.write_rig(folder, of, s4.nominal(knows_direction=knows_direction), name=folder.name)
-    return tl.diagnose(tl.load(rig), progress=False)
+    return diagnose(tl.load(rig))
 
 
 def test_the_direction_of_friction_is_found(tmp_path: Path) -> None:
-    found = diagnosed(tmp_path / "direction", s4.case("E1"), knows_direction=False)
+    found = diagnosed(tmp_path / "rig-direction", s4.case("E1"), knows_direction=False)
     assert found.verdict == "effect"
     assert found.selected == ("contact:asymmetry",)
     asymmetry = found.effects[0].parameters["coefficient_asymmetry"]["value"]
@@ -30,7 +31,7 @@ def test_the_direction_of_friction_is_found(tmp_path: Path) -> None:
 
 def test_elastic_ends_are_found(tmp_path: Path) -> None:
     """Tuning alone takes them for a softer cable; the loop that is left tells."""
-    found = diagnosed(tmp_path / "ends", s4.case("E2"), knows_direction=True)
+    found = diagnosed(tmp_path / "rig-ends", s4.case("E2"), knows_direction=True)
     assert found.verdict == "effect"
     assert found.selected == ("ends:compliance",)
     compliance = found.effects[0].parameters["compliance"]["value"]
@@ -45,7 +46,7 @@ def test_elastic_ends_are_found_with_the_contacts_free(tmp_path: Path) -> None:
     rig = tl.load(s4.write_rig(tmp_path / "free", s4.case("E2"), believed, name="free", duration=2.0))
     free = {name: replace(rig.parameters[name], sd=0.3 * rig.parameters[name].value) for name in KEPT}
     rig = replace(rig, parameters={**rig.parameters, **free})
-    found = tl.diagnose(rig, library=["ends:compliance", "sensor.tension_23:delay"], progress=False)
+    found = diagnose(rig, library=["ends:compliance", "sensor.tension_23:delay"])
     assert found.verdict == "effect"
     assert found.selected == ("ends:compliance",)
     compliance = found.effects[0].parameters["compliance"]["value"]

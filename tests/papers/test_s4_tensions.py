@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from diagnoses import diagnose
 from tendonlab.errors import ParameterError
 from tendonlab.papers import s4
 
@@ -81,7 +82,7 @@ def test_friction_is_fitted_to_tensions(seen: pd.DataFrame, rig: tl.System) -> N
 def test_the_withheld_direction_is_found_in_tensions(tmp_path: Path) -> None:
     believed = s4.nominal(knows_direction=False)
     logs = s4.write_rig(tmp_path / "t", s4.case("E1"), believed, name="t", system="ccsrm_tensions")
-    found = tl.diagnose(tl.load(logs), progress=False)
+    found = diagnose(tl.load(logs))
     assert found.verdict == "effect"
     assert found.selected == ("contact:asymmetry",)
 
@@ -90,7 +91,7 @@ def test_joint_friction_is_no_matter_of_the_tensions(tmp_path: Path) -> None:
     """E3: where both angles are read, friction of joint 1 explains nothing, and is not missed."""
     believed = s4.nominal(knows_direction=True)
     logs = s4.write_rig(tmp_path / "t", s4.case("E3"), believed, name="t", system="ccsrm_tensions")
-    assert tl.diagnose(tl.load(logs), progress=False).verdict == "no_gap"
+    assert diagnose(tl.load(logs)).verdict == "no_gap"
 
 
 @pytest.mark.parametrize(

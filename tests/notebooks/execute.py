@@ -1,0 +1,28 @@
+"""Run a notebook from top to bottom in a fresh kernel and an empty folder: it may rely on nothing but the package."""
+
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+from diagnoses import HOOK
+
+FOLDER = Path(__file__).resolve().parents[2] / "notebooks"
+LONGEST = 300  # s per cell, on a busy machine
+WITHIN = "assert len(differences) > 10\nassert differences['within'].all(), differences[~differences['within']]"
+
+
+def execute(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch, *, last: str = "pass") -> None:
+    """Run the notebook `name`, whose diagnoses are shared with the tests, in `folder`, then the code `last`.
+
+    It writes nothing to stderr and draws at least one figure."""
+    monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
+    monkeypatch.setenv("PYDEVD_DISABLE_FILE_VALIDATION", "1")
+    notebook = nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
+    notebook.cells.insert(0, nbformat.v4.new_code_cell(HOOK))
+    notebook.cells.append(nbformat.v4.new_code_cell(last))
+    NotebookClient(notebook, timeout=LONGEST, resources={"metadata": {"path": str(folder)}}).execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert [output.text for output in outputs if output.get("name") == "stderr"] == []
+    assert any("image/png" in output.get("data", {}) for output in outputs)
