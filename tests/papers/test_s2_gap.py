@@ -19,6 +19,7 @@ def diagnosis(tmp_path_factory: pytest.TempPathFactory) -> tl.Diagnosis:
     return diagnose(rig)
 
 
+@pytest.mark.slow
 def test_the_ripple_is_selected(diagnosis: tl.Diagnosis) -> None:
     assert diagnosis.verdict == "effect"
     assert list(diagnosis.selected) == ["gear:ripple"]
@@ -27,6 +28,7 @@ def test_the_ripple_is_selected(diagnosis: tl.Diagnosis) -> None:
     assert found["ripple_cosine"]["ci95"][0] < 0.0 < found["ripple_cosine"]["ci95"][1]
 
 
+@pytest.mark.slow
 def test_the_gap_shrinks_by_more_than_80_percent(diagnosis: tl.Diagnosis) -> None:
     assert diagnosis.shrinkage["from_refitted"]["value"] > 0.8
     assert diagnosis.shrinkage["from_nominal"]["value"] > 0.8
@@ -68,6 +70,7 @@ def test_the_disturbance_goes_with_the_screw_and_not_with_time() -> None:
 HOLDS = ["stiction:hold", "joint:coulomb", "joint:viscous", "gear:ripple", "bushing_1:coulomb", "load:offset"]
 
 
+@pytest.mark.slow
 def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path) -> None:
     """Whatever keeps the joint from creeping back holds the sense: stiction of the guides, and dry friction of the
     joint. Without repeats these logs cannot tell, and the diagnosis says so, and what would."""
@@ -82,6 +85,7 @@ def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path
     assert "pushes on the resting joint" in proposal["description"]
 
 
+@pytest.mark.slow
 def test_a_run_made_twice_tells_a_hold_from_friction_of_the_joint(tmp_path: Path) -> None:
     rig = s2.write_dataset(tmp_path, RIG, hold=True, repeated=True)
     found = diagnose(rig, library=HOLDS)
@@ -91,6 +95,7 @@ def test_a_run_made_twice_tells_a_hold_from_friction_of_the_joint(tmp_path: Path
     assert found.shrinkage["from_refitted"]["value"] > 0.8
 
 
+@pytest.mark.slow
 def test_cables_that_are_softer_at_low_tension_are_told_from_everything(tmp_path: Path) -> None:
     """G4: the joint hangs, preloaded to half of where the toe ends; Table II knows the cables above it only. That one
     run is made twice tells the noise from an error of 0.1 mrad."""

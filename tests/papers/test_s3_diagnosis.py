@@ -21,6 +21,7 @@ def found() -> dict[str, tl.Diagnosis]:
 
 
 @pytest.mark.parametrize("case", ["slack", "pretension_loss", "presliding"])
+@pytest.mark.slow
 def test_what_is_withheld_is_ranked_first_and_nothing_that_is_not_there_is_named(
     case: str, found: dict[str, tl.Diagnosis]
 ) -> None:
@@ -32,6 +33,7 @@ def test_what_is_withheld_is_ranked_first_and_nothing_that_is_not_there_is_named
     assert why.verdict == "effect"
 
 
+@pytest.mark.slow
 def test_slack_explains_the_gap(found: dict[str, tl.Diagnosis]) -> None:
     """The loose tendon carries nothing: amplitude 1."""
     why = found["slack"]
@@ -40,6 +42,7 @@ def test_slack_explains_the_gap(found: dict[str, tl.Diagnosis]) -> None:
     assert why.effects[0].parameters["slack"]["value"] == pytest.approx(1.0, abs=0.15)
 
 
+@pytest.mark.slow
 def test_lost_pretension_is_told_by_its_share(found: dict[str, tl.Diagnosis]) -> None:
     """0.2 is missing; the simulator's own friction coefficient is 2 % too large, which looks the same."""
     why = found["pretension_loss"]
@@ -47,6 +50,7 @@ def test_lost_pretension_is_told_by_its_share(found: dict[str, tl.Diagnosis]) ->
     assert why.effects[0].parameters["pretension_loss"]["value"] == pytest.approx(0.2, abs=0.04)
 
 
+@pytest.mark.slow
 def test_presliding_and_the_drive_s_inertia_are_both_found(found: dict[str, tl.Diagnosis]) -> None:
     """The twin's drive has 0.05 kg·m², its bristles 4e-3 rad before a load of 20 N·m/rad."""
     why = found["presliding"]
@@ -58,6 +62,7 @@ def test_presliding_and_the_drive_s_inertia_are_both_found(found: dict[str, tl.D
     assert why.shrinkage["from_refitted"]["value"] > 0.55
 
 
+@pytest.mark.slow
 def test_an_imitation_gives_way_to_what_it_imitated() -> None:
     """By the model as printed, without any viscous friction, a delay of the sensor explains most alone: before a load
     that is a spring, torque rises with velocity. Beside the presliding, viscous friction and inertia explain more."""

@@ -11,6 +11,7 @@ from diagnoses import diagnose
 from tendonlab.papers import s4
 from tendonlab.report.diagnosis import Diagnosis
 
+pytestmark = pytest.mark.slow
 TOLD = ("bristle_stiffness", "contact_viscous")
 KEPT = ("static_friction_coefficient", "stribeck_velocity", "bristle_stiffness", "bristle_damping")
 

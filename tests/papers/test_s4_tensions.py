@@ -79,6 +79,7 @@ def test_friction_is_fitted_to_tensions(seen: pd.DataFrame, rig: tl.System) -> N
     assert found.values["contact_viscous"] == pytest.approx(500.0, rel=0.1)
 
 
+@pytest.mark.slow
 def test_the_withheld_direction_is_found_in_tensions(tmp_path: Path) -> None:
     believed = s4.nominal(knows_direction=False)
     logs = s4.write_rig(tmp_path / "t", s4.case("E1"), believed, name="t", system="ccsrm_tensions")
@@ -87,6 +88,7 @@ def test_the_withheld_direction_is_found_in_tensions(tmp_path: Path) -> None:
     assert found.selected == ("contact:asymmetry",)
 
 
+@pytest.mark.slow
 def test_joint_friction_is_no_matter_of_the_tensions(tmp_path: Path) -> None:
     """E3: where both angles are read, friction of joint 1 explains nothing, and is not missed."""
     believed = s4.nominal(knows_direction=True)
