@@ -1,20 +1,24 @@
 """Friction and transmission models of cable- and tendon-driven mechanisms, and why simulators miss reality."""
 
-from importlib.metadata import version as _version
+from importlib import import_module as _import_module
+from typing import TYPE_CHECKING
 
-from tendonlab._core import actuation, friction, loading, sensing, sheath, transmission
-from tendonlab.data import Dataset, Experiment, load
-from tendonlab.diagnosis.diagnose import diagnose
-from tendonlab.errors import DatasetError, NumericalError, ParameterError
-from tendonlab.identification.identify import Identification, identify
-from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
-from tendonlab.report.diagnosis import Diagnosis
-from tendonlab.simulation.catalog import kinds, system_info
-from tendonlab.simulation.sweep import sweep
-from tendonlab.simulation.system import System
-from tendonlab.simulation.trajectory import Trajectory
+if TYPE_CHECKING:
+    from tendonlab._core import actuation, friction, loading, sensing, sheath, transmission
+    from tendonlab.data import Dataset, Experiment, load
+    from tendonlab.diagnosis.diagnose import diagnose
+    from tendonlab.errors import DatasetError, NumericalError, ParameterError
+    from tendonlab.identification.identify import identify
+    from tendonlab.identification.result import Identification
+    from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
+    from tendonlab.report.diagnosis import Diagnosis
+    from tendonlab.simulation.catalog import kinds, system_info
+    from tendonlab.simulation.sweep import sweep
+    from tendonlab.simulation.system import System
+    from tendonlab.simulation.trajectory import Trajectory
 
-__version__ = _version("tendonlab")
+    __version__: str
+
 __all__ = [
     "BranchLosses",
     "Dataset",
@@ -41,3 +45,51 @@ __all__ = [
     "system_info",
     "transmission",
 ]
+
+# Where each public name is defined: a module is loaded when its first name is used, so that the import takes no time.
+_HOMES = {
+    "tendonlab._core": "actuation friction loading sensing sheath transmission",
+    "tendonlab.data": "Dataset Experiment load",
+    "tendonlab.diagnosis.diagnose": "diagnose",
+    "tendonlab.errors": "DatasetError NumericalError ParameterError",
+    "tendonlab.identification.identify": "identify",
+    "tendonlab.identification.result": "Identification",
+    "tendonlab.mechanics.tendons": "BranchLosses Reducer TendonTransmission",
+    "tendonlab.report.diagnosis": "Diagnosis",
+    "tendonlab.simulation.catalog": "kinds system_info",
+    "tendonlab.simulation.sweep": "sweep",
+    "tendonlab.simulation.system": "System",
+    "tendonlab.simulation.trajectory": "Trajectory",
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
+_PACKAGES = (
+    "blind",
+    "cli",
+    "data",
+    "diagnosis",
+    "identification",
+    "mechanics",
+    "papers",
+    "procedures",
+    "report",
+    "simulation",
+)
+
+if not TYPE_CHECKING:  # otherwise every misspelt name would pass the type checker
+
+    def __getattr__(name: str) -> object:
+        if name == "__version__":
+            from importlib.metadata import version
+
+            value = version("tendonlab")
+        elif name in _HOME_OF:
+            value = getattr(_import_module(_HOME_OF[name]), name)
+        elif name in _PACKAGES:
+            value = _import_module(f"tendonlab.{name}")
+        else:
+            raise AttributeError(f"module 'tendonlab' has no attribute {name!r}")
+        globals()[name] = value
+        return value
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__, *_PACKAGES, "__version__"})

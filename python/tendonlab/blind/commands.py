@@ -9,10 +9,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .drawing import draw
-from .runner import run
-from .scoring import score
-
 
 def add_parser(subparsers: Any) -> None:
     """Add `blind` to the subparsers of the command line; the chosen verb is called as `given.run(given)` and returns
@@ -59,16 +55,22 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 
 
 def _draw(given: argparse.Namespace) -> int:
+    from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
+
     print(draw(given.seed, given.count, given.out, sealed=given.sealed, jobs=given.jobs))
     return 0
 
 
 def _run(given: argparse.Namespace) -> int:
+    from .runner import run
+
     print(run(given.cases, given.out, jobs=given.jobs))
     return 0
 
 
 def _score(given: argparse.Namespace) -> int:
+    from .scoring import score
+
     result = score(given.sealed, given.reports)
     print(result)
     if given.csv:

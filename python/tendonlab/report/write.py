@@ -30,8 +30,8 @@ def write_report(diagnosis: Diagnosis, out: Path, *, figures: bool = True) -> Pa
     """Write report.html and report.json, and each figure as PNG and SVG if `figures`; the path of report.html.
 
     Each file appears in `out` when all of them are complete: an interrupted call leaves what was there before."""
+    from tendonlab.report.document import page
     from tendonlab.report.figures import draw_all
-    from tendonlab.report.page import page
 
     out = prepare_folder(out)
     pictures = draw_all(diagnosis)

@@ -7,12 +7,11 @@ The transmission for any number of joints is `tendonlab.TendonTransmission`; as 
 from tendonlab.papers.s1.arm import Arm
 from tendonlab.papers.s1.bearing import BallBearing
 from tendonlab.papers.s1.blocks import CONTROL_SCHEME, BlockDiagram, kinematics_diagram, statics_diagram
+from tendonlab.papers.s1.compensation import FeedForward, FreeMotion, Trajectory, evaluate_free_motion, free_motion
 from tendonlab.papers.s1.device import example_device, first_joints, gravity, without_tension_loss
-from tendonlab.papers.s1.differences import differences
 from tendonlab.papers.s1.display import ForceDisplay, Hand, Wall
 from tendonlab.papers.s1.drawing import draw_blocks, draw_routing
 from tendonlab.papers.s1.experiments import compensated, effect_sizes, noisy_identification, reducer_loop, strategies
-from tendonlab.papers.s1.free_motion import FeedForward, FreeMotion, Trajectory, evaluate_free_motion, free_motion
 from tendonlab.papers.s1.identification import (
     decompose,
     fit_motor_friction,
@@ -23,6 +22,7 @@ from tendonlab.papers.s1.identification import (
     steady_average,
     true_motor_friction,
 )
+from tendonlab.papers.s1.printed import differences
 from tendonlab.papers.s1.twin import write_dataset
 
 __all__ = [

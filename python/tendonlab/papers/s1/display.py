@@ -10,7 +10,7 @@ import pandas as pd
 
 from tendonlab.mechanics.tendons import TendonTransmission
 from tendonlab.papers.s1.arm import Arm
-from tendonlab.papers.s1.free_motion import FeedForward
+from tendonlab.papers.s1.compensation import FeedForward
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,8 +10,8 @@ import pandas as pd
 
 from tendonlab.arguments import whole
 from tendonlab.mechanics.tendons import Model, TendonTransmission
+from tendonlab.papers.s1.compensation import FeedForward, FreeMotion, evaluate_free_motion, free_motion
 from tendonlab.papers.s1.device import LOAD_LEVELS, example_device, gravity
-from tendonlab.papers.s1.free_motion import FeedForward, FreeMotion, evaluate_free_motion, free_motion
 from tendonlab.papers.s1.identification import (
     MotorFriction,
     Strategy,

@@ -3,8 +3,6 @@
 `constants` gives the paper's numbers, `system` the library's simulator with them, `simulate` the independent twin."""
 
 from tendonlab.papers.s2 import diagrams, equations, figures, graphs
-from tendonlab.papers.s2.constants import Constants, constants, identified
-from tendonlab.papers.s2.differences import differences, fits
 from tendonlab.papers.s2.energy import energy_drift, free_swing
 from tendonlab.papers.s2.estimate import Estimate
 from tendonlab.papers.s2.experiments import bushing_loop, cable_ramps, gear_points
@@ -18,9 +16,11 @@ from tendonlab.papers.s2.identify import (
     split_common_friction,
 )
 from tendonlab.papers.s2.orders import order_spectrum
-from tendonlab.papers.s2.reference import Reference, reference
+from tendonlab.papers.s2.printed import differences, fits
 from tendonlab.papers.s2.rig import log_of_twin, nut_input, parameters, system, write_dataset
+from tendonlab.papers.s2.trapezoids import Reference, reference
 from tendonlab.papers.s2.twin import PID, last_sense, measured, simulate
+from tendonlab.papers.s2.values import Constants, constants, identified
 
 __all__ = [
     "PID",

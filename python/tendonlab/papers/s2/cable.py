@@ -7,7 +7,7 @@ from math import sqrt
 
 from scipy.optimize import brentq
 
-from tendonlab.papers.s2.constants import Constants
+from tendonlab.papers.s2.values import Constants
 
 
 @dataclass(frozen=True)

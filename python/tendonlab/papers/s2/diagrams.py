@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.papers.s2 import equations
-from tendonlab.papers.s2.constants import Constants
+from tendonlab.papers.s2.values import Constants
 from tendonlab.report.plot.style import COLOURS, INK, MUTED, RULE
 
 if TYPE_CHECKING:

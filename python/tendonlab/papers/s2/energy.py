@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from tendonlab.arguments import positive, whole
 from tendonlab.papers.s2 import equations
-from tendonlab.papers.s2.constants import Constants
+from tendonlab.papers.s2.values import Constants
 
 
 def free_swing(

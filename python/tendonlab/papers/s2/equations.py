@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tendonlab.errors import ParameterError
-from tendonlab.papers.s2.constants import Constants
+from tendonlab.papers.s2.values import Constants
 
 Array = NDArray[np.float64]
 CORIOLIS = {"corrected": 2.0, "printed": -4.0}  # times m_2 l_1 d_21 sin(theta) theta'^2

@@ -8,8 +8,8 @@ import pandas as pd
 from tendonlab.arguments import positive, whole
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2 import equations
-from tendonlab.papers.s2.constants import Constants
-from tendonlab.papers.s2.reference import reference
+from tendonlab.papers.s2.trapezoids import reference
+from tendonlab.papers.s2.values import Constants
 
 TORQUE_SD, FORCE_SD = 4e-3, 1.5  # N*m, N
 RAMPS = (2e-5, -5e-5, 5e-5, -1e-4, 1e-4)  # m/s, of the elongation between 200 and 500 N

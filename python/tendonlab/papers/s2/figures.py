@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from tendonlab import _core
-from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.estimate import Estimate
 from tendonlab.papers.s2.identify import bushing_law
+from tendonlab.papers.s2.values import Constants
 from tendonlab.report.plot.style import COLOURS, INK, MUTED, tidy
 
 if TYPE_CHECKING:

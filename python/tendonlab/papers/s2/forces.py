@@ -9,11 +9,11 @@ import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.stats import norm
 
-from tendonlab.papers.s2.constants import BRANCHES, Constants
 from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.identify import bushing_law
-from tendonlab.papers.s2.reference import Reference
+from tendonlab.papers.s2.trapezoids import Reference
 from tendonlab.papers.s2.twin import last_sense
+from tendonlab.papers.s2.values import BRANCHES, Constants
 from tendonlab.procedures import time_shift
 
 JUMP = 15.0  # N, from which on a change of force is a jump

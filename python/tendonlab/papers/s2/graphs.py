@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tendonlab.mechanics.bondgraph import GY, MTF, TF, BondGraph, C, Element, I, One, R, Se, Sf, Zero
-from tendonlab.papers.s2.constants import Constants
+from tendonlab.papers.s2.values import Constants
 
 Parts = tuple[list[Element], list[tuple[str, ...]]]
 Friction = Callable[[Any, Any], Any]  # force, N, from the velocity of cable 1 in its bushing, m/s, and theta, rad

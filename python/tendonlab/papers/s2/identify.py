@@ -12,9 +12,9 @@ from scipy.optimize import least_squares
 from tendonlab import _core
 from tendonlab.arguments import positive
 from tendonlab.errors import ParameterError
-from tendonlab.papers.s2.constants import BRANCHES
 from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.estimate import Estimate, from_jacobian
+from tendonlab.papers.s2.values import BRANCHES
 from tendonlab.procedures import split
 
 LOWEST_FORCE = 200.0  # N, below which the fibre of the cable is not linear

@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.data import Dataset, load
-from tendonlab.papers.s2.constants import Constants
-from tendonlab.papers.s2.reference import Reference, reference
+from tendonlab.papers.s2.trapezoids import Reference, reference
 from tendonlab.papers.s2.twin import Sense, measured, simulate
+from tendonlab.papers.s2.values import Constants
 from tendonlab.simulation.catalog import system_info
 from tendonlab.simulation.system import System
 

@@ -18,9 +18,9 @@ from tendonlab.arguments import within
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.cable import Spring
-from tendonlab.papers.s2.constants import Constants
 from tendonlab.papers.s2.equations import Array
-from tendonlab.papers.s2.reference import Reference
+from tendonlab.papers.s2.trapezoids import Reference
+from tendonlab.papers.s2.values import Constants
 
 Sense = Literal["instantaneous", "hold", "reference", "smooth"]
 SENSES: tuple[Sense, ...] = ("instantaneous", "hold", "reference", "smooth")

@@ -3,7 +3,6 @@
 Constants and tables, closed forms, the line contact, the twin, the rig's experiments and their identification, in the
 paper's notation; the simulator is the library's system "ccsrm"."""
 
-from tendonlab.papers.s4.compare import compare, differences
 from tendonlab.papers.s4.constants import (
     ENCODER_BITS,
     ERROR_ON_THE_RIG,
@@ -31,6 +30,7 @@ from tendonlab.papers.s4.library import simulate, simulator, tension_simulator
 from tendonlab.papers.s4.line_contact import LineContactLuGre
 from tendonlab.papers.s4.metrics import dwell, error_levels, loop_width, nrmse, spread, synchronous_error
 from tendonlab.papers.s4.play import capstan_play, saturation
+from tendonlab.papers.s4.printed import compare, differences
 from tendonlab.papers.s4.rig import Case, case, cases, measured, run_rig
 from tendonlab.papers.s4.statics import (
     Tensions,

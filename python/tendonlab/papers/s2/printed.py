@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.papers.s2 import energy, equations, rig
-from tendonlab.papers.s2.constants import BRANCHES, Constants, identified
 from tendonlab.papers.s2.estimate import Estimate
 from tendonlab.papers.s2.experiments import bushing_loop, cable_ramps, gear_points
 from tendonlab.papers.s2.forces import force_shift, shifted
@@ -17,8 +16,9 @@ from tendonlab.papers.s2.identify import (
     fit_gear_friction,
     split_common_friction,
 )
-from tendonlab.papers.s2.reference import reference
+from tendonlab.papers.s2.trapezoids import reference
 from tendonlab.papers.s2.twin import simulate
+from tendonlab.papers.s2.values import BRANCHES, Constants, identified
 
 COLUMNS = ("printed", "computed", "difference", "tolerance", "within")
 
