@@ -11,9 +11,10 @@ import tendonlab as tl
 from tendonlab import _core
 from tendonlab.cli.demo import bundled
 from tendonlab.data.datasets import prepare
-from tendonlab.fitting import noise
 from tendonlab.fitting.case import make_case
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import white
+from tendonlab.fitting.problem import Fitter
 
 
 @pytest.fixture(scope="session")
@@ -24,9 +25,9 @@ def twin_case() -> Any:
 @pytest.fixture(scope="session")
 def fitter(twin_case: Any) -> Fitter:
     """Fits the bundled rig under so much noise that its model is about right."""
-    floor = noise.white(twin_case)
+    floor = white(twin_case.noise)
     floor = replace(floor, sd=[20 * s for s in floor.sd])
-    return Fitter(twin_case, noise.whitenings(twin_case, floor), floor, _core.Cancel())
+    return Fitter(twin_case, floor, _core.Cancel())
 
 
 @pytest.fixture(scope="session")

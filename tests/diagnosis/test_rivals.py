@@ -11,7 +11,8 @@ from tendonlab.diagnosis.answer.verdict import marginals
 from tendonlab.diagnosis.search.contest import Round, probabilities
 from tendonlab.diagnosis.search.rivals import Place, drop_effects
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 
 STRIBECK, ASYMMETRY, DELAY = "joint:stribeck", "joint:asymmetry", "actuation:delay"
 NAMES = {"stribeck": STRIBECK, "asymmetry": ASYMMETRY, "delay": DELAY, "none": None}

@@ -149,8 +149,7 @@ def test_the_profile_is_a_parabola_where_the_model_is_right(fit: Any) -> None:
 
 
 def _information(fit: Any) -> np.ndarray:
-    found = fit.problem.solve()
-    stacked = np.vstack(found["jacobian"])
+    stacked = np.vstack([run.jacobian for run in fit.problem.solve().runs])
     return np.asarray(stacked.T @ stacked + np.diag([f.sd**-2.0 for f in fit.problem.free]))
 
 

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.fitting import noise
 from tendonlab.fitting.case import Case, fine_enough
-from tendonlab.fitting.fitted import Fitted, Fitter
-from tendonlab.fitting.noise import Floor, Sensitivities
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
+from tendonlab.fitting.noise import white
+from tendonlab.fitting.problem import Fitter
 
 ROUGH = 8  # iterations of the fit under white noise, of which only the residuals are used
 
 
 def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
     """A fit under the sensors' white noise alone, before the floor is known."""
-    return _fitter(case, noise.white(case), cancel).fit(case.system, max_iterations=ROUGH)
+    return Fitter(case, white(case.noise), cancel).fit(case.system, max_iterations=ROUGH)
 
 
 def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> Fitter:
@@ -27,10 +27,10 @@ def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cance
 
     Friction then varies from run to run as the floor says, and the simulator is as exact as the floor requires."""
     seen = _sensitivities(case, rough, pool)
-    floor = noise.estimate(case, seen, case.train)
-    groups = tuple((tuple(group), floor.tau) for group in noise.friction_groups(case.system))
-    settings = fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd)))
-    return _fitter(replace(case, settings=settings, scatter=groups), floor, cancel, seen)
+    floor = estimate(case, seen, case.train)
+    groups = tuple((tuple(group), floor.tau) for group in friction_groups(case.system))
+    case = fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd)))
+    return Fitter(replace(case, scatter=groups), floor, cancel, seen)
 
 
 def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:
@@ -41,14 +41,10 @@ def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fi
         return fitter, model
     case = fitter.case
     seen = _sensitivities(case, model, pool)
-    residual = noise.estimate(case, seen, case.train)
-    floor = replace(fitter.floor, sd=residual.sd, share=residual.share)
-    fitter = _fitter(case, floor, fitter.cancel, seen)
+    residual = estimate(case, seen, case.train)
+    floor = replace(fitter.floor, sd=residual.sd, effective=residual.effective)
+    fitter = Fitter(case, floor, fitter.cancel, seen)
     return fitter, fitter.fit(model.system, added=model.added, initial=model.initial)
-
-
-def _fitter(case: Case, floor: Floor, cancel: _core.Cancel, seen: Sequence[Sensitivities] = ()) -> Fitter:
-    return Fitter(case, noise.whitenings(case, floor, seen), floor, cancel)
 
 
 def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list[Sensitivities]:
@@ -56,6 +52,6 @@ def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list
 
     def seen(i: int) -> Sensitivities:
         start = initial.get(i, case.own_mean(i).tolist())
-        return noise.sensitivities(case, fitted.system, i, start)
+        return sensitivities(case, fitted.system, i, start)
 
     return list(pool.map(seen, range(len(case.experiments))))

@@ -1,30 +1,33 @@
-"""A case: everything that every model of a diagnosis shares, so that only the effect differs between them."""
+"""A case: the experiments of a fit, ready for the simulator, and all that every model fitted to them shares."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset, Experiment
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.noise import sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
-from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
+START = 0.2  # s of an experiment from which its initial state is estimated
 
 
 @dataclass(frozen=True)
 class Case:
-    """A dataset made ready. `noise` is the sd of each output's white noise, NaN where it was not measured. `scatter`:
-    groups of parameters that differ by a common factor from run to run, and the sd of its logarithm.
+    """Experiments made ready. `noise`: sd of each output's white noise, NaN where it was not measured. `tolerance`:
+    relative error of a step of the simulation. `scatter`: groups of parameters that differ by a common factor from run
+    to run, and the sd of its logarithm.
 
     Each experiment has unknowns of its own: the free parts of its initial state, then the logarithms of the factors."""
 
@@ -35,7 +38,7 @@ class Case:
     prepared: tuple[Prepared, ...]
     noise: np.ndarray
     scales: Mapping[str, Scale]
-    settings: _core.Settings
+    tolerance: float
     scatter: tuple[tuple[tuple[int, ...], float], ...] = ()
 
     @property
@@ -53,6 +56,14 @@ class Case:
         splits = ["train" if i in experiments else "unused" for i in range(len(self.experiments))]
         chosen = (replace(e, split=s) for e, s in zip(self.experiments, splits, strict=True))
         return replace(self, experiments=tuple(chosen))
+
+    def beginning(self, i: int) -> Case:
+        """The first 0.2 s of experiment i alone, to fit, without run-to-run factors."""
+        ready, experiment = self.prepared[i], self.experiments[i]
+        time = experiment.time
+        num = min(max(8, int(np.searchsorted(time - time[0], START))), len(time))
+        first = replace(ready, core=ready.core.until(num), measured=ready.measured[:, :num])
+        return replace(self, experiments=(replace(experiment, split="train"),), prepared=(first,), scatter=())
 
     @property
     def outputs(self) -> list[str]:
@@ -76,90 +87,116 @@ class Case:
         """Values and flags for the core in experiment i, with its `own` unknowns (default: their means): its conditions
         hold there, its payload is added."""
         values = system.values()
-        names = [p.name for p in system.info.parameters]
-        for name, added in self.experiments[i].add.items():
-            values[names.index(name)] += added
-        for name, known in self.experiments[i].conditions.items():
-            if name in system.parameters:
-                values[names.index(name)] = known
+        fixed, added = self._conditions(i)
+        for k, known in fixed.items():
+            values[k] = known
+        for k, more in added.items():
+            values[k] += more
         for (group, _), logarithm in zip(self.scatter, own[len(self.prepared[i].initial) :], strict=False):
             for k in group:
                 values[k] *= float(np.exp(logarithm))
         return values, system.active(keep_zero=False)
 
+    def started(self, i: int, own: Sequence[float]) -> _core.Experiment:
+        """Experiment i from the initial state among its own unknowns."""
+        core = self.prepared[i].core
+        position, velocity = list(core.position), list(core.velocity)
+        for (of, axis), value in zip(self.prepared[i].initial, own, strict=False):
+            (position if of == "position" else velocity)[axis] = value
+        return core.started(position, velocity)
+
+    def run(
+        self,
+        i: int,
+        system: System,
+        own: Sequence[float] = (),
+        *,
+        seeds: Sequence[tuple[str, int]] = (),
+        ports: bool = False,
+    ) -> dict[str, Any]:
+        """Experiment i simulated by `system` with the experiment's `own` unknowns (default: their means); see
+        `_core.simulate`."""
+        values, active = self.at(i, system, own)
+        settings = self.settings(ports=ports)
+        return dict(_core.simulate(system.kind, values, active, self.started(i, own), list(seeds), settings))
+
     def task(self, i: int, whitening: _core.Whitening) -> _core.Task:
         """Experiment i for the compiled fit."""
-        names = [p.name for p in self.system.info.parameters]
-        experiment, ready = self.experiments[i], self.prepared[i]
+        ready = self.prepared[i]
+        fixed, added = self._conditions(i)
+        scatter = [(list(group), sd) for group, sd in self.scatter]
+        initial, sd = list(ready.initial), list(ready.initial_sd)
         return _core.Task(
-            ready.core, whitening,
-            fixed={names.index(n): v for n, v in experiment.conditions.items() if n in self.system.parameters},
-            added={names.index(n): v for n, v in experiment.add.items()},
-            initial=list(ready.initial), initial_sd=list(ready.initial_sd),
-            scatter=[(list(group), sd) for group, sd in self.scatter],
-        )  # fmt: skip
+            ready.core, whitening, fixed=fixed, added=added, initial=initial, initial_sd=sd, scatter=scatter
+        )
+
+    def settings(self, *, ports: bool = False) -> _core.Settings:
+        """How the stepper goes through every experiment of this case. `ports`: also record what each port sees."""
+        return _core.Settings(
+            tolerance=self.tolerance,
+            position_scale=min(e.position_scale for e in self.prepared),
+            velocity_scale=min(e.velocity_scale for e in self.prepared),
+            max_attempts=ATTEMPTS * max(e.measured.shape[1] for e in self.prepared) + 10_000,
+            ports=ports,
+        )
+
+    def _conditions(self, i: int) -> tuple[dict[int, float], dict[int, float]]:
+        """Parameters that experiment i fixes, and those it adds to; other names are covariates."""
+        own = set(self.system.parameters)
+        index = {p.name: k for k, p in enumerate(self.system.info.parameters) if p.name in own}
+        experiment = self.experiments[i]
+        fixed = {index[name]: value for name, value in experiment.conditions.items() if name in index}
+        added = {index[name]: value for name, value in experiment.add.items() if name in index}
+        return fixed, added
 
 
-def make_case(dataset: Dataset, system: System | None = None) -> Case:
-    """Prepare every experiment of `dataset` for the simulator (the dataset's own unless given)."""
+def make_case(
+    dataset: Dataset,
+    system: System | None = None,
+    *,
+    experiments: Sequence[Experiment] | None = None,
+    tolerance: float | None = None,
+) -> Case:
+    """Prepare `experiments` of `dataset` (default: all) for the simulator (default: the dataset's own). `tolerance`:
+    default as `fine_enough` has it for the sensors' noise.
+
+    Raises DatasetError where a signal that the replay needs was not logged."""
     system = dataset.system() if system is None else system
+    experiments = dataset.experiments if experiments is None else experiments
     replay = choose_replay(dataset, system)
-    prepared = tuple(prepare(e, system, replay) for e in dataset.experiments)
-    noise = np.array([_noise(dataset, prepared, c) for c in range(len(system.info.outputs))])
-    found = scales(system, prepared)
-    settings = _settings(system, prepared, 1e-4)
-    case = Case(dataset, system, replay, tuple(dataset.experiments), prepared, noise, found, settings)
-    return replace(case, settings=fine_enough(case, case.noise))
+    prepared = tuple(prepare(e, system, replay) for e in experiments)
+    noise = sensor_noise(dataset, system, prepared)
+    known = scales(system, prepared)
+    case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
+    return case if tolerance else fine_enough(case, noise)
 
 
-def _noise(dataset: Dataset, prepared: Sequence[Prepared], c: int) -> float:
-    """Sd of the white noise of output c: as stated, else from fourth differences; at least its quantisation's."""
-    records = [e.measured[c] for e in prepared if np.isfinite(e.measured[c]).any()]
-    if not records:
-        return np.nan
-    spec = dataset.signals[dataset.system().info.outputs[c].name]
-    found = spec.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
-    coarse = (spec.resolution or 0.0) / np.sqrt(12)
-    smallest = 1e-9 * max(float(np.nanmax(np.abs(r))) for r in records)
-    total = found if spec.noise_sd is not None else float(np.hypot(found, coarse))
-    return float(max(total, coarse, smallest, 1e-300))
+def fine_enough(case: Case, noise: np.ndarray) -> Case:
+    """The case with the loosest tolerance at which the simulator's own error stays below a tenth of `noise`, of each
+    output."""
+    best = _finest(case)
 
-
-def _settings(system: System, prepared: Sequence[Prepared], tolerance: float) -> _core.Settings:
-    longest = max(e.measured.shape[1] for e in prepared)
-    return _core.Settings(
-        max_attempts=ATTEMPTS * longest + 10_000,
-        tolerance=tolerance,
-        position_scale=min(e.position_scale for e in prepared),
-        velocity_scale=min(e.velocity_scale for e in prepared),
-    )
-
-
-def fine_enough(case: Case, noise: np.ndarray) -> _core.Settings:
-    """The loosest tolerance at which the simulator's own error stays below a tenth of `noise`, of each output."""
-    sample = case.train[:3]
-    kept = case.measured
-
-    def run(tolerance: float) -> list[np.ndarray]:
-        settings = _settings(case.system, case.prepared, tolerance)
-        ready = [(case.at(i, case.system), case.prepared[i].core) for i in sample]
-        return [_core.simulate(case.system.kind, *at, core, [], settings)["outputs"][kept] for at, core in ready]
-
-    def error(outputs: list[np.ndarray]) -> float:
+    def error(tolerance: float) -> float:
+        outputs = _outputs(case, tolerance)
         rms = [np.sqrt(np.mean(np.square(a - b), axis=1)) for a, b in zip(outputs, best, strict=True)]
-        return float(np.max(np.array(rms) / noise[kept]))
+        return float(np.max(np.array(rms) / noise[case.measured]))
 
-    best = _finest(run)
-    enough = (t for t in TOLERANCES if error(run(t)) < NUMERICS_SHARE)
-    return _settings(case.system, case.prepared, next(enough, TOLERANCES[-1]))
+    enough = (t for t in TOLERANCES if error(t) < NUMERICS_SHARE)
+    return replace(case, tolerance=next(enough, TOLERANCES[-1]))
 
 
-def _finest(run: Callable[[float], list[np.ndarray]]) -> list[np.ndarray]:
+def _finest(case: Case) -> list[np.ndarray]:
     """What comes nearest to the exact solution: kinks of inputs that go straight from sample to sample may forbid the
     finest steps."""
     for share in (100, 10):
         try:
-            return run(TOLERANCES[-1] / share)
+            return _outputs(case, TOLERANCES[-1] / share)
         except NumericalError:
             continue
-    return run(TOLERANCES[-1])
+    return _outputs(case, TOLERANCES[-1])
+
+
+def _outputs(case: Case, tolerance: float) -> list[np.ndarray]:
+    """Measured outputs of the first three training experiments, by the case's own simulator."""
+    case = replace(case, tolerance=tolerance)
+    return [case.run(i, case.system)["outputs"][case.measured] for i in case.train[:3]]

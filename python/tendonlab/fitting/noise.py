@@ -1,9 +1,6 @@
-"""The noise floor: what repeats of an experiment do not repeat (docs/method.md).
+"""Noise of the outputs: what sensors add to them, and the filter that makes independent rows of residuals.
 
-Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
-explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats
-nothing tells noise from what the model lacks: then all of a residual counts as noise, with as few independent samples
-as its memory leaves, and is judged anew after each effect that was found."""
+A residual has one row for each output and sample that counts, output by output, time increasing."""
 
 from __future__ import annotations
 
@@ -13,129 +10,69 @@ from dataclasses import dataclass
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.fitting.case import Case
+from tendonlab.data import Dataset
+from tendonlab.errors import DatasetError
+from tendonlab.simulation.prepare import Prepared
+from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
-AR_ORDER = 6
-RUN_TO_RUN, RUN_TO_RUN_WEIGHT = 0.008, 4.0  # default sd of friction from run to run, and the repeats it counts for
-RUN_TO_RUN_UNKNOWN = 0.02  # assumed in the plain floor where nothing repeats
+SMALLEST = 1e-6  # of a record's spread: less noise than single precision keeps
+BLOCK = 2.0  # s: residuals of a mechanism stay correlated for less
 
 
 @dataclass(frozen=True)
 class Floor:
-    """`rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and
-    innovation sd of each output. `tau`: relative sd of friction from run to run. `repeated`: whether repeats say so.
-    `share` of the whitened samples that count as independent: decisions weigh them by it, fits as they are."""
+    """The noise that a model's residuals are judged against.
+
+    `rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and innovation
+    sd of each output (sd 0: not measured). `tau`: relative sd of friction from run to run. `repeated`: whether repeats
+    say so. `effective`: share of the whitened samples that count as independent; decisions weigh them by it, fits do
+    not."""
 
     rms: np.ndarray
     ar: list[list[float]]
     sd: list[float]
     tau: float
     repeated: bool
-    share: float = 1.0
+    effective: float = 1.0
+
+    def whitening(
+        self, measured: np.ndarray, directions: np.ndarray | None = None, spread: Sequence[float] = ()
+    ) -> _core.Whitening:
+        """For one experiment, `measured` (outputs, samples); see `_core.Whitening`."""
+        sd = [s if s > 0 and np.isfinite(row).any() else np.inf for s, row in zip(self.sd, measured, strict=True)]
+        return _core.Whitening(self.ar, sd, measured, directions, list(spread))
 
 
-@dataclass(frozen=True)
-class Sensitivities:
-    """Of one experiment at one model: residual (outputs, samples), the run-to-run directions d y / d log friction
-    (k, outputs, samples) and the initial state's (q, outputs, samples), the latter per sd of its prior."""
+def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared]) -> np.ndarray:
+    """Sd of the white noise of each output, in its unit: as stated, else from fourth differences; NaN where no record
+    measured it.
 
-    residual: np.ndarray
-    friction: np.ndarray
-    initial: np.ndarray
-
-
-def white(case: Case) -> Floor:
-    """The sensors' white noise alone: for the first fit, before the floor is known."""
-    sd = [float(s) if np.isfinite(s) else 0.0 for s in case.noise]
-    return Floor(case.noise, [[] for _ in sd], sd, 0.0, repeated=False)
-
-
-def friction_groups(system: System) -> list[list[int]]:
-    """Indices of the friction parameters of each element: they scale together from run to run."""
-    info = system.info
-    groups = []
-    for element in dict.fromkeys(port.element for port in info.ports):
-        group = [
-            i
-            for i, p in enumerate(info.parameters)
-            if p.element == element and p.name in system.parameters and p.amplitude and p.purpose != "share"
-            and p.dimension in ("effort", "damping", "ratio") and system.parameters[p.name] != 0.0
-            and f"{p.element}:{p.effect}" in system.effects
-        ]  # fmt: skip
-        if group:
-            groups.append(group)
-    return groups
+    At least that of rounding to the resolution, resolution/√12. The fourth differences of a record that moves on at
+    every sample hold its rounding already, those of one that repeats its readings hold none of it: so the larger of
+    the two counts, not their sum. At least 1e-6 of the record's spread, whatever its offset; 1 for a record that never
+    changes. Raises DatasetError where no output was measured."""
+    outputs = system.info.outputs
+    noise = np.full(len(outputs), np.nan)
+    for c, output in enumerate(outputs):
+        signal = dataset.signals.get(output.name)
+        records = [e.measured[c] for e in prepared if np.isfinite(e.measured[c]).any()]
+        if signal is None or not records:
+            continue
+        rounding = (signal.resolution or 0.0) / np.sqrt(12.0)
+        smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
+        stated = signal.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
+        noise[c] = max(stated, rounding, smallest) or 1.0
+    if np.isnan(noise).all():
+        names = ", ".join(output.name for output in outputs)
+        raise DatasetError(f"{dataset.name}: no output of {system.kind} was measured; expected one of {names}")
+    return noise
 
 
-def sensitivities(case: Case, system: System, i: int, own: Sequence[float]) -> Sensitivities:
-    """Residual and directions of experiment i at `system`, with its own unknowns."""
-    groups, ready = friction_groups(system), case.prepared[i]
-    seeds = [("parameter", k) for group in groups for k in group] + list(ready.initial)
-    values, active = case.at(i, system, own)
-    experiment = started(case, i, own)
-    run = _core.simulate(system.kind, values, active, experiment, seeds, case.settings)
-    gradient = run.get("gradient", np.zeros((0, *ready.measured.shape)))
-    rows, directions = 0, []
-    for group in groups:
-        directions.append(sum(values[k] * gradient[rows + j] for j, k in enumerate(group)))
-        rows += len(group)
-    sd = np.asarray(ready.initial_sd).reshape(-1, 1, 1)
-    friction = np.array(directions) if directions else np.zeros((0, *ready.measured.shape))
-    return Sensitivities(
-        run["outputs"] - ready.measured, friction, gradient[rows:] * sd if len(sd) else gradient[rows:]
-    )
-
-
-def started(case: Case, i: int, own: Sequence[float]) -> _core.Experiment:
-    """Experiment i from the initial state among its own unknowns."""
-    core = case.prepared[i].core
-    position, velocity = list(core.position), list(core.velocity)
-    for (of, axis), value in zip(case.prepared[i].initial, own, strict=False):
-        (position if of == "position" else velocity)[axis] = value
-    return core.started(position, velocity)
-
-
-def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
-    """The floor from repeats; where nothing repeats, from the residuals of the experiments `fitted` themselves."""
-    groups: dict[str, list[int]] = {}
-    for i, experiment in enumerate(case.experiments):
-        if experiment.repeat is not None:
-            groups.setdefault(experiment.repeat, []).append(i)
-    repeats = [g for g in groups.values() if len(g) > 1 and len({len(case.prepared[i].measured[0]) for i in g}) == 1]
-    return _from_repeats(case, seen, repeats) if repeats else _without_repeats(case, seen, fitted)
-
-
-def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[Sequence[int]]) -> Floor:
-    members = [i for g in repeats for i in g]
-    differences = [
-        (seen[i].residual - np.mean([seen[j].residual for j in g], axis=0)) * np.sqrt(len(g) / (len(g) - 1))
-        for g in repeats
-        for i in g
-    ]
-    pairs = [_clean(case, d, seen[i]) for i, d in zip(members, differences, strict=True)]
-    ar: list[list[float]] = [[] for _ in case.noise]
-    rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
-    for c in case.measured:
-        ar[c], innovation = _autoregression([d[c] for d, _ in pairs])
-        sd[c] = max(innovation, 0.3 * float(case.noise[c]))
-        rms[c] = max(
-            _rms([d[c] for d in differences]), 0.3 * float(case.noise[c])
-        )  # coarse readings may repeat exactly
-    return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
-
-
-def _without_repeats(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
-    rms, sd = np.full(len(case.noise), np.nan), np.zeros(len(case.noise))
-    memory = np.ones(len(case.noise))
-    for c in case.measured:
-        records = [seen[i].residual[c] for i in fitted]
-        rms[c] = _assumed(case, seen, c)
-        sd[c] = max(_rms(records), float(case.noise[c]))
-        memory[c] = np.mean([integrated_time(r[np.isfinite(r)]) for r in records])
-    mean = float(np.mean(memory[case.measured]))
-    weighed = sd * np.sqrt(memory / mean)  # a channel that varies more slowly says less
-    return Floor(rms, [[] for _ in sd], weighed.tolist(), RUN_TO_RUN, repeated=False, share=1.0 / mean)
+def white(noise: np.ndarray) -> Floor:
+    """The sensors' white noise alone."""
+    sd = [float(s) if np.isfinite(s) else 0.0 for s in noise]
+    return Floor(noise, [[] for _ in sd], sd, 0.0, repeated=False)
 
 
 def integrated_time(record: np.ndarray) -> float:
@@ -149,78 +86,25 @@ def integrated_time(record: np.ndarray) -> float:
     return float(1.0 + 2.0 * np.sum(lagged[1 : ended[0] if len(ended) else None]) / lagged[0])
 
 
-def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> list[_core.Whitening]:
-    """Whitening of every experiment by the autoregression. Run-to-run friction is an unknown of its own in a fit; of an
-    experiment that nothing is fitted to, it is a random effect along what was `seen`."""
-    made = [_core.Whitening(floor.ar, floor.sd, ready.measured) for ready in case.prepared]
-    for i in case.test if seen else ():
-        if len(seen[i].friction):
-            directions = made[i].apply_many(seen[i].friction)
-            made[i] = _core.Whitening(
-                floor.ar, floor.sd, case.prepared[i].measured, directions, [floor.tau] * len(seen[i].friction)
-            )
-    return made
-
-
-def kept_samples(floor: Floor, measured: np.ndarray) -> list[np.ndarray]:
-    """Samples that the rows of a whitening stand for, channel by channel."""
-    kept = []
+def rows_of(floor: Floor, measured: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Output and sample of each whitened row: a sample counts where it and those that the autoregression needs were
+    measured."""
+    outputs, samples = [], []
     for c, row in enumerate(measured):
         if not floor.sd[c] > 0:
-            kept.append(np.zeros(0, dtype=int))
             continue
         there = np.isfinite(row)
         whole = there.copy()
         for lag in range(1, len(floor.ar[c]) + 1):
             whole[lag:] &= there[:-lag]
             whole[:lag] = False
-        kept.append(np.flatnonzero(whole))
-    return kept
+        samples.append(np.flatnonzero(whole))
+        outputs.append(np.full(len(samples[-1]), c))
+    return np.concatenate(outputs), np.concatenate(samples)
 
 
-def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.ndarray, np.ndarray]:
-    """A difference without what friction from run to run and the initial state explain, and friction's coefficients."""
-    kept = case.measured
-    weight = case.noise[kept][:, None]
-    y = (difference[kept] / weight).ravel()
-    basis = np.concatenate([s.friction[:, kept], s.initial[:, kept]]) / weight
-    columns = basis.reshape(len(basis), y.size).T
-    there = np.isfinite(y)
-    found = np.linalg.lstsq(columns[there], y[there], rcond=None)[0] if columns.shape[1] else np.zeros(0)
-    cleaned = difference.copy()
-    cleaned[kept] -= np.tensordot(found, np.concatenate([s.friction, s.initial])[:, kept], axes=1)
-    return cleaned, found[: len(s.friction)]
-
-
-def _run_to_run(coefficients: list[np.ndarray]) -> float:
-    """Relative sd of friction from run to run, shrunk to the default."""
-    squares = np.concatenate([np.square(c) for c in coefficients]) if coefficients else np.zeros(0)
-    total = RUN_TO_RUN_WEIGHT * RUN_TO_RUN**2 + float(np.sum(squares))
-    return float(np.sqrt(total / (RUN_TO_RUN_WEIGHT + len(squares))))
-
-
-def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
-    """Yule–Walker over several records: always stable. Missing samples count as zero."""
-    from scipy.linalg import solve_toeplitz
-
-    lags = np.zeros(AR_ORDER + 1)
-    count = 0
-    for record in records:
-        x = np.nan_to_num(record - np.nanmean(record))
-        count += len(x)
-        lags += [float(x[k:] @ x[: len(x) - k]) for k in range(AR_ORDER + 1)]
-    lags /= count
-    lags[0] *= 1 + 1e-9
-    a = np.asarray(solve_toeplitz(lags[:-1], lags[1:]))
-    return a.tolist(), float(np.sqrt(max(lags[0] - a @ lags[1:], 1e-300)))
-
-
-def _assumed(case: Case, seen: Sequence[Sensitivities], c: int) -> float:
-    """The plain floor of output c where nothing repeats: sensor noise and an assumed run-to-run friction."""
-    moved = [np.sum(np.square(RUN_TO_RUN_UNKNOWN * s.friction[:, c]), axis=0) for s in seen if len(s.friction)]
-    return float(np.sqrt(case.noise[c] ** 2 + (np.mean(np.concatenate(moved)) if moved else 0.0)))
-
-
-def _rms(records: list[np.ndarray]) -> float:
-    x = np.concatenate(records)
-    return float(np.sqrt(np.nanmean(np.square(x))))
+def blocks_of(time: np.ndarray) -> np.ndarray:
+    """Which contiguous block of at least 2 s each sample belongs to; blocks are as long as each other."""
+    passed = time - time[0]
+    num = max(1, int(passed[-1] / BLOCK))
+    return np.minimum((num * passed / max(passed[-1], 1e-300)).astype(int), num - 1)

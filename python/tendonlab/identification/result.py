@@ -1,9 +1,9 @@
-"""What a fit is given and what it found: values with honest uncertainty, and profiles on demand."""
+"""The result of `identify`: fitted values with honest uncertainty, and profiles on demand."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from html import escape
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
@@ -11,54 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from tendonlab import _core
 from tendonlab.errors import ParameterError, expected_one_of
-from tendonlab.fitting.priors import Free
+from tendonlab.fitting.problem import Problem
 from tendonlab.simulation.system import System
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HARDLY = 0.9  # of an output's rms about its mean: a fit that leaves more explains next to nothing of it
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Problem:
-    """A fit as the core solves it: a task an experiment, its free parameters and the starts of free initial states."""
-
-    system: System
-    free: tuple[Free, ...]
-    tasks: tuple[_core.Task, ...]
-    settings: _core.Settings
-    values: tuple[float, ...]
-    initial: tuple[tuple[float, ...], ...] = ()
-
-    def solve(self, *, cancel: _core.Cancel | None = None, max_iterations: int = 50) -> dict[str, Any]:
-        """See `_core.fit`. Raises NumericalError where a simulation fails at the start."""
-        return _core.fit(*self._stated(), initial=self.initial, cancel=cancel, max_iterations=max_iterations)
-
-    def linearise(self) -> dict[str, Any]:
-        """What `solve` gives, at the start and unsolved. Raises NumericalError where a simulation fails."""
-        return _core.linearise(*self._stated(), initial=self.initial)
-
-    def at(self, values: Sequence[float], initial: Sequence[Sequence[float]]) -> Problem:
-        """The same problem started from these values of all parameters and of the free initial states."""
-        return replace(
-            self,
-            values=tuple(values),
-            free=tuple(f.started(values[f.index]) for f in self.free),
-            initial=tuple(tuple(state) for state in initial),
-        )
-
-    def without(self, name: str, value: float) -> Problem:
-        """The same problem with one free parameter held at `value`."""
-        held = next(f for f in self.free if f.name == name)
-        values = tuple(value if i == held.index else v for i, v in enumerate(self.values))
-        return replace(self, values=values, free=tuple(f for f in self.free if f.name != name))
-
-    def _stated(self) -> tuple[Any, ...]:
-        active, free = self.system.active(keep_zero=True), [f.core() for f in self.free]
-        return self.system.kind, self.values, active, self.tasks, free, self.settings
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -135,11 +95,11 @@ class Identification:
         for outward in ([v for v in points if v >= value], [v for v in reversed(points) if v < value]):
             at = self.problem
             for point in outward:  # each from its inner neighbour
-                found = at.without(name, point).solve()
-                at = at.at(found["values"], found["initial"])
+                fit = at.with_fixed(name, point).solve()
+                at = at.at(fit.system, fit.initial)
                 x = free.coordinate(point)
                 prior = 0.5 * ((x - free.mean) / free.sd) ** 2 if np.isfinite(free.sd) else 0.0
-                rows.append((point, found["cost"] + prior - self.cost, found["converged"]))
+                rows.append((point, fit.cost + prior - self.cost, fit.converged))
         return pd.DataFrame(sorted(rows), columns=["value", "cost", "converged"])
 
     def plot(self, ax: Axes | None = None, *, experiment: str | None = None) -> Axes:
@@ -205,9 +165,8 @@ class Identification:
 
     def _require(self, name: str) -> None:
         if name not in self.parameters.index:
-            raise ParameterError(
-                f"{name!r} was not fitted; {expected_one_of(name, [str(n) for n in self.parameters.index])}"
-            )
+            known = [str(n) for n in self.parameters.index]
+            raise ParameterError(f"{name!r} was not fitted; {expected_one_of(name, known)}")
 
 
 def _bounded(value: float) -> float | None:

@@ -12,7 +12,7 @@ from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.errors import NumericalError
-from tendonlab.fitting.fitted import Fitter
+from tendonlab.fitting.problem import Fitter
 from tendonlab.report.diagnosis import EffectFinding
 
 

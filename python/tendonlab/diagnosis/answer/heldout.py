@@ -9,19 +9,20 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import BLOCK, Fitted, block_index
-from tendonlab.fitting.noise import Floor, started
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import Floor, blocks_of, rows_of
+from tendonlab.fitting.problem import initial_state
 from tendonlab.simulation.system import System
 
-START = 0.2  # s of a held-out experiment on which its initial state is estimated
 NUM_BOOTSTRAP = 1000
 
 
 @dataclass(frozen=True)
 class Replayed:
-    """One model on some experiments: residuals (outputs, samples) and outputs of each."""
+    """One model on some experiments: initial state, residuals (outputs, samples) and outputs of each."""
 
     systems: tuple[System, ...]
+    initial: tuple[tuple[float, ...], ...]
     residuals: tuple[np.ndarray, ...]
     outputs: tuple[np.ndarray, ...]
 
@@ -30,48 +31,24 @@ def models(case: Case, fitted: Fitted, experiments: Sequence[int]) -> list[Syste
     """The model to replay each experiment with: as fitted; where nothing is held out, without it."""
     if case.test:
         return [fitted.system] * len(experiments)
-    return [fitted.without(case.train.index(i)) for i in experiments]
+    return [fitted.leaving_out(case.train.index(i)) for i in experiments]
 
 
 def replay(case: Case, systems: Sequence[System], experiments: Sequence[int]) -> Replayed:
     """Replay a model on each of some whole experiments, from an initial state estimated on its first 0.2 s."""
-    outputs = []
-    for system, i in zip(systems, experiments, strict=True):
-        run = _core.simulate(system.kind, *case.at(i, system), initial_state(case, system, i), [], case.settings)
-        outputs.append(run["outputs"])
+    initial = tuple(initial_state(case, system, i) for system, i in zip(systems, experiments, strict=True))
+    runs = zip(experiments, systems, initial, strict=True)
+    outputs = tuple(case.run(i, system, start)["outputs"] for i, system, start in runs)
     residuals = tuple(o - case.prepared[i].measured for o, i in zip(outputs, experiments, strict=True))
-    return Replayed(tuple(systems), residuals, tuple(outputs))
-
-
-def initial_state(case: Case, system: System, i: int) -> _core.Experiment:
-    """Experiment i started where its first 0.2 s say, by three Gauss–Newton steps with the priors of its state."""
-    ready = case.prepared[i]
-    if not ready.initial:
-        return ready.core
-    time = np.asarray(case.experiments[i].time)
-    num = max(8, int(np.searchsorted(time - time[0], START)))
-    sd = np.asarray(ready.initial_sd)
-    weight = case.noise[case.measured]
-    mean = ready.initial_mean
-    value = mean.copy()
-    for _ in range(3):
-        core = started(case, i, value.tolist()).until(num)
-        run = _core.simulate(system.kind, *case.at(i, system), core, list(ready.initial), case.settings)
-        r = ((run["outputs"] - ready.measured[:, :num])[case.measured] / weight[:, None]).ravel()
-        j = (run["gradient"][:, case.measured] / weight[:, None]).reshape(len(value), -1).T
-        there = np.isfinite(r)
-        hessian = j[there].T @ j[there] + np.diag(sd**-2.0)
-        value = value - np.linalg.solve(hessian, j[there].T @ r[there] + (value - mean) / sd**2)
-    return started(case, i, value.tolist())
+    return Replayed(tuple(systems), initial, residuals, outputs)
 
 
 def mean_squares(case: Case, of: Replayed, experiments: Sequence[int]) -> list[np.ndarray]:
     """Mean square of each output over blocks of at least 2 s, an array (blocks, outputs) an experiment."""
     rows = []
     for residual, i in zip(of.residuals, experiments, strict=True):
-        time = np.asarray(case.experiments[i].time)
-        num = max(1, int((time[-1] - time[0]) / BLOCK))
-        rows.append(np.array([row_mean_squares(part) for part in np.array_split(residual, num, axis=1)]))
+        block = blocks_of(case.experiments[i].time)
+        rows.append(np.array([row_mean_squares(residual[:, block == b]) for b in range(int(block.max()) + 1)]))
     return rows
 
 
@@ -124,6 +101,8 @@ def predictive_gain(
     for k, i in enumerate(experiments):
         a = whitening[i].residual(before.outputs[k])
         b = whitening[i].residual(after.outputs[k])
-        gains += list(0.5 * floor.share * np.bincount(block_index(case, i, floor), a**2 - b**2))
+        _, samples = rows_of(floor, case.prepared[i].measured)
+        block = blocks_of(case.experiments[i].time)[samples]
+        gains += list(0.5 * floor.effective * np.bincount(block, a**2 - b**2))
     spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else abs(float(np.sum(gains)))
     return {"mean": float(np.sum(gains)), "se": spread}

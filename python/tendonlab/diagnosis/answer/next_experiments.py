@@ -60,7 +60,7 @@ def _separation(case: Case, floor: Floor, first: Fitted, second: Fitted, motion:
     seeds = [("parameter", f.index) for f in first.free]
     a = _run(case, first, motion, loop, seeds)
     b = _run(case, second, motion, loop, [])
-    weight = floor.rms[case.measured][:, None] / np.sqrt(floor.share)
+    weight = floor.rms[case.measured][:, None] / np.sqrt(floor.effective)
     d = ((a["outputs"] - b["outputs"])[case.measured] / weight).ravel()
     slopes = np.array([f.slope(x) for f, x in zip(first.free, first.x, strict=True)])
     j = (a["gradient"][:, case.measured] / weight).reshape(len(seeds), -1).T * slopes
@@ -98,4 +98,5 @@ def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, seeds: list[tuple[s
         position=[path[0] * s / shape[axis] for s in shape],
         velocity=[0.0] * len(shape),
     )
-    return dict(_core.simulate(system.kind, system.values(), system.active(keep_zero=True), core, seeds, case.settings))
+    flags, settings = system.active(keep_zero=True), case.settings()
+    return dict(_core.simulate(system.kind, system.values(), flags, core, seeds, settings))

@@ -7,8 +7,10 @@ from typing import Any
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import FEW, Fitted
-from tendonlab.fitting.noise import RUN_TO_RUN_UNKNOWN, Floor
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.floor import RUN_TO_RUN_UNKNOWN
+from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS
 from tendonlab.simulation.catalog import unit
 
 UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatability is the limit
@@ -26,7 +28,7 @@ def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
     if not case.test:
         few = "" if len(case.train) > 1 else "; with a single experiment they are those of the experiment fitted"
         said.append(f"no experiment is held out: gaps and shrinkage leave one experiment out of the fit in turn{few}")
-    if len(case.train) < FEW:
+    if len(case.train) < FEWEST_EXPERIMENTS:
         said.append(
             f"{len(case.train)} training experiment{'s' if len(case.train) > 1 else ''}: contiguous blocks of at least "
             "2 s stand for experiments where one is left out"

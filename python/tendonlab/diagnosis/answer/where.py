@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab import _core
-from tendonlab.diagnosis.answer.heldout import Replayed, initial_state
+from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import WhereMap
@@ -55,12 +54,8 @@ class PortRecords:
     """What the ports of a model did in some experiments, sample by sample."""
 
     def __init__(self, case: Case, of: Replayed, experiments: Sequence[int]) -> None:
-        settings = _core.Settings(tolerance=1e-5, position_scale=case.prepared[0].position_scale,
-                                  velocity_scale=case.prepared[0].velocity_scale, ports=True)  # fmt: skip
-        runs = []
-        for system, i in zip(of.systems, experiments, strict=True):
-            start = initial_state(case, system, i)
-            runs.append(_core.simulate(system.kind, *case.at(i, system), start, [], settings)["ports"])
+        replays = zip(experiments, of.systems, of.initial, strict=True)
+        runs = [case.run(i, system, initial, ports=True)["ports"] for i, system, initial in replays]
         self.case = case
         self.ports = np.concatenate(runs, axis=2)
         self.time = np.concatenate([np.asarray(case.experiments[i].time) for i in experiments])

@@ -12,7 +12,8 @@ from tendonlab.diagnosis.search.refit import strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains

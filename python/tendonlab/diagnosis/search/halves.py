@@ -10,7 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.errors import NumericalError
-from tendonlab.fitting.fitted import FEW, Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS
 
 NEAR_FLOOR = 1.3  # whitened mean square below which the model without the effect is nearly at the floor
 ITERATIONS = 6
@@ -22,7 +24,7 @@ def predicts_better(fitter: Fitter, base: Fitted, extended: Fitted) -> bool:
 
     Fewer than four experiments have no halves: then True. A fit that cannot be simulated predicts nothing: False."""
     train = fitter.case.train
-    if len(train) < FEW:
+    if len(train) < FEWEST_EXPERIMENTS:
         return True
     halves = train[::2], train[1::2]
     try:

@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from tendonlab.diagnosis.search.halves import NEAR_FLOOR
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.errors import NumericalError, ParameterError
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.system import System
 
 SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned

@@ -14,7 +14,8 @@ from tendonlab.diagnosis.search.refit import CATCH_UP
 from tendonlab.diagnosis.search.trial import DETECT, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.system import System
 
 NUM_RIVALS, MAX_EFFECTS = 3, 3

@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab import _core
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import Fitted, Fitter
-from tendonlab.fitting.noise import started
+from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
+from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, Effect, Parameter
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
@@ -106,7 +105,7 @@ def _score(
     residuals = [b.residual for b in base.blocks]
     moved = _residuals_with(fitter, base, effect, values)
     directions = [(m - r) / amplitude for m, r in zip(moved, residuals, strict=True)]
-    dd, dr, jd, jr = (base.share * total for total in _products(base, directions))
+    dd, dr, jd, jr = (base.effective * total for total in _products(base, directions))
     imitation = np.linalg.solve(base.precision, jd)  # of the direction by the free parameters
     slope, curvature = float(dr - imitation @ jr), max(float(dd - imitation @ jd), 0.0)
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
@@ -139,8 +138,6 @@ def _residuals_with(fitter: Fitter, base: Fitted, effect: str, values: dict[str,
     case, system = fitter.case, base.system.with_effects({effect: values})
     blocks: list[np.ndarray] = []
     for t, i in enumerate(case.train):
-        run = _core.simulate(
-            system.kind, *case.at(i, system, base.initial[t]), started(case, i, base.initial[t]), [], case.settings
-        )
-        blocks += fitter.rows(base.states[t], t, fitter.whitening[i].residual(run["outputs"]))
+        outputs = case.run(i, system, base.initial[t])["outputs"]
+        blocks += base.split(t, fitter.whitening[i].residual(outputs))
     return blocks

@@ -16,7 +16,8 @@ from tendonlab.diagnosis.search.rivals import (
     largest_gain,
 )
 from tendonlab.diagnosis.search.workshop import Workshop
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 
 MAX_IMPROVEMENTS = 3
 

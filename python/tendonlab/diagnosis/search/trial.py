@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 

@@ -13,7 +13,8 @@ from tendonlab import _core
 from tendonlab.diagnosis.search.refit import refit
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.trial import Trial
-from tendonlab.fitting.fitted import Fitted, Fitter
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,168 @@
+"""The noise floor: what repeats of an experiment do not repeat (docs/method.md).
+
+Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
+explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats
+nothing tells noise from what the model lacks: then all of a residual counts as noise, with as few independent samples
+as its memory leaves, and is judged anew after each effect that was selected."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.noise import Floor, integrated_time
+from tendonlab.simulation.system import System
+
+AR_ORDER = 6
+RUN_TO_RUN, RUN_TO_RUN_WEIGHT = 0.008, 4.0  # default sd of friction from run to run, and the repeats it counts for
+RUN_TO_RUN_UNKNOWN = 0.02  # assumed in the plain floor where nothing repeats
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Of one experiment at one model: residual (outputs, samples), the run-to-run directions d y / d log friction
+    (k, outputs, samples) and the initial state's (q, outputs, samples), the latter per sd of its prior."""
+
+    residual: np.ndarray
+    friction: np.ndarray
+    initial: np.ndarray
+
+
+def friction_groups(system: System) -> list[list[int]]:
+    """Indices of the friction parameters of each element: they scale together from run to run."""
+    info = system.info
+    groups = []
+    for element in dict.fromkeys(port.element for port in info.ports):
+        group = [
+            i
+            for i, p in enumerate(info.parameters)
+            if p.element == element and p.name in system.parameters and p.amplitude and p.purpose != "share"
+            and p.dimension in ("effort", "damping", "ratio") and system.parameters[p.name] != 0.0
+            and f"{p.element}:{p.effect}" in system.effects
+        ]  # fmt: skip
+        if group:
+            groups.append(group)
+    return groups
+
+
+def sensitivities(case: Case, system: System, i: int, own: Sequence[float]) -> Sensitivities:
+    """Residual and directions of experiment i at `system`, with its own unknowns."""
+    groups, ready = friction_groups(system), case.prepared[i]
+    seeds = [("parameter", k) for group in groups for k in group] + list(ready.initial)
+    run = case.run(i, system, own, seeds=seeds)
+    gradient = run.get("gradient", np.zeros((0, *ready.measured.shape)))
+    values, _ = case.at(i, system, own)
+    rows, directions = 0, []
+    for group in groups:
+        directions.append(sum(values[k] * gradient[rows + j] for j, k in enumerate(group)))
+        rows += len(group)
+    sd = np.asarray(ready.initial_sd).reshape(-1, 1, 1)
+    friction = np.array(directions) if directions else np.zeros((0, *ready.measured.shape))
+    return Sensitivities(
+        run["outputs"] - ready.measured, friction, gradient[rows:] * sd if len(sd) else gradient[rows:]
+    )
+
+
+def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
+    """The floor from repeats; where nothing repeats, from the residuals of the experiments `fitted` themselves."""
+    groups: dict[str, list[int]] = {}
+    for i, experiment in enumerate(case.experiments):
+        if experiment.repeat is not None:
+            groups.setdefault(experiment.repeat, []).append(i)
+    repeats = [g for g in groups.values() if len(g) > 1 and len({len(case.prepared[i].measured[0]) for i in g}) == 1]
+    return _from_repeats(case, seen, repeats) if repeats else _without_repeats(case, seen, fitted)
+
+
+def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[Sequence[int]]) -> Floor:
+    members = [i for g in repeats for i in g]
+    differences = [
+        (seen[i].residual - np.mean([seen[j].residual for j in g], axis=0)) * np.sqrt(len(g) / (len(g) - 1))
+        for g in repeats
+        for i in g
+    ]
+    pairs = [_clean(case, d, seen[i]) for i, d in zip(members, differences, strict=True)]
+    ar: list[list[float]] = [[] for _ in case.noise]
+    rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
+    for c in case.measured:
+        ar[c], innovation = _autoregression([d[c] for d, _ in pairs])
+        sd[c] = max(innovation, 0.3 * float(case.noise[c]))
+        rms[c] = max(
+            _rms([d[c] for d in differences]), 0.3 * float(case.noise[c])
+        )  # coarse readings may repeat exactly
+    return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
+
+
+def _without_repeats(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
+    rms, sd = np.full(len(case.noise), np.nan), np.zeros(len(case.noise))
+    memory = np.ones(len(case.noise))
+    for c in case.measured:
+        records = [seen[i].residual[c] for i in fitted]
+        rms[c] = _assumed(case, seen, c)
+        sd[c] = max(_rms(records), float(case.noise[c]))
+        memory[c] = np.mean([integrated_time(r[np.isfinite(r)]) for r in records])
+    mean = float(np.mean(memory[case.measured]))
+    weighed = sd * np.sqrt(memory / mean)  # a channel that varies more slowly says less
+    return Floor(rms, [[] for _ in sd], weighed.tolist(), RUN_TO_RUN, repeated=False, effective=1.0 / mean)
+
+
+def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> list[_core.Whitening]:
+    """Whitening of every experiment by the autoregression. Run-to-run friction is an unknown of its own in a fit; of an
+    experiment that nothing is fitted to, it is a random effect along what was `seen`."""
+    made = [floor.whitening(ready.measured) for ready in case.prepared]
+    for i in case.test if seen else ():
+        if len(seen[i].friction):
+            directions = made[i].apply_many(seen[i].friction)
+            made[i] = floor.whitening(case.prepared[i].measured, directions, [floor.tau] * directions.shape[1])
+    return made
+
+
+def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.ndarray, np.ndarray]:
+    """A difference without what friction from run to run and the initial state explain, and friction's coefficients."""
+    kept = case.measured
+    weight = case.noise[kept][:, None]
+    y = (difference[kept] / weight).ravel()
+    basis = np.concatenate([s.friction[:, kept], s.initial[:, kept]]) / weight
+    columns = basis.reshape(len(basis), y.size).T
+    there = np.isfinite(y)
+    found = np.linalg.lstsq(columns[there], y[there], rcond=None)[0] if columns.shape[1] else np.zeros(0)
+    cleaned = difference.copy()
+    cleaned[kept] -= np.tensordot(found, np.concatenate([s.friction, s.initial])[:, kept], axes=1)
+    return cleaned, found[: len(s.friction)]
+
+
+def _run_to_run(coefficients: list[np.ndarray]) -> float:
+    """Relative sd of friction from run to run, shrunk to the default."""
+    squares = np.concatenate([np.square(c) for c in coefficients]) if coefficients else np.zeros(0)
+    total = RUN_TO_RUN_WEIGHT * RUN_TO_RUN**2 + float(np.sum(squares))
+    return float(np.sqrt(total / (RUN_TO_RUN_WEIGHT + len(squares))))
+
+
+def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
+    """Yule–Walker over several records: always stable. Missing samples count as zero."""
+    from scipy.linalg import solve_toeplitz
+
+    lags = np.zeros(AR_ORDER + 1)
+    count = 0
+    for record in records:
+        x = np.nan_to_num(record - np.nanmean(record))
+        count += len(x)
+        lags += [float(x[k:] @ x[: len(x) - k]) for k in range(AR_ORDER + 1)]
+    lags /= count
+    lags[0] *= 1 + 1e-9
+    a = np.asarray(solve_toeplitz(lags[:-1], lags[1:]))
+    return a.tolist(), float(np.sqrt(max(lags[0] - a @ lags[1:], 1e-300)))
+
+
+def _assumed(case: Case, seen: Sequence[Sensitivities], c: int) -> float:
+    """The plain floor of output c where nothing repeats: sensor noise and an assumed run-to-run friction."""
+    moved = [np.sum(np.square(RUN_TO_RUN_UNKNOWN * s.friction[:, c]), axis=0) for s in seen if len(s.friction)]
+    return float(np.sqrt(case.noise[c] ** 2 + (np.mean(np.concatenate(moved)) if moved else 0.0)))
+
+
+def _rms(records: list[np.ndarray]) -> float:
+    x = np.concatenate(records)
+    return float(np.sqrt(np.nanmean(np.square(x))))

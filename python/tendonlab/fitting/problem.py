@@ -1,0 +1,170 @@
+"""A fit as it is posed: a model, its free parameters and each experiment's own unknowns, against the training
+experiments of a case and under one noise floor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted, Run
+from tendonlab.fitting.floor import Sensitivities, whitenings
+from tendonlab.fitting.noise import Floor, blocks_of, rows_of, white
+from tendonlab.fitting.priors import Free, free_parameters
+from tendonlab.fitting.uncertainty import informed
+from tendonlab.simulation.system import System
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Problem:
+    """Fits start at the values of `system`. `added`: its effects beyond the nominal ones. `initial`: starting values of
+    each training experiment's own unknowns; empty: their prior means."""
+
+    case: Case
+    floor: Floor
+    system: System
+    added: tuple[str, ...] = ()
+    free: tuple[Free, ...] = ()
+    initial: tuple[tuple[float, ...], ...] = ()
+
+    def solve(self, *, cancel: _core.Cancel | None = None, max_iterations: int = 50, tolerance: float = 1e-8) -> Fitted:
+        """The model at its optimum. Raises NumericalError where a simulation fails at the start."""
+        return self._fitted(
+            _core.fit(
+                *self._stated(), initial=self.initial, max_iterations=max_iterations, tolerance=tolerance, cancel=cancel
+            )
+        )
+
+    def linearise(self) -> Fitted:
+        """The model at the start. Raises NumericalError where a simulation fails."""
+        return self._fitted(_core.linearise(*self._stated(), initial=self.initial))
+
+    def at(self, system: System, initial: Sequence[Sequence[float]]) -> Problem:
+        """The same problem started from these values of its parameters and of the experiments' own unknowns."""
+        free = tuple(f.started(system.parameters[f.name]) for f in self.free)
+        return replace(self, system=system, free=free, initial=tuple(tuple(own) for own in initial))
+
+    def with_fixed(self, name: str, value: float) -> Problem:
+        """The same problem with one free parameter held at `value`."""
+        free = tuple(f for f in self.free if f.name != name)
+        return replace(self, system=self.system.with_parameters({name: value}), free=free)
+
+    def return_to_prior(self, fit: Fitted) -> Fitted:
+        """The `fit` of this problem with every parameter that the data do not constrain back at its prior's middle.
+
+        A limit that the fit stays clear of constrains nothing there, but may do so at its prior: then it stays."""
+        known = np.array(fit.informed)
+        while not known.all():
+            held = {f.name: f.expected for f, seen in zip(self.free, known, strict=True) if not seen}
+            there = self.at(fit.system.with_parameters(held), fit.initial).linearise()
+            seen_there = known | np.array(there.informed)
+            if (seen_there == known).all():
+                return replace(
+                    there,
+                    informed=tuple(known.tolist()),
+                    converged=fit.converged,
+                    message=fit.message,
+                    num_iterations=fit.num_iterations,
+                )
+            known = seen_there
+        return replace(fit, informed=tuple(known.tolist()))
+
+    def _stated(self) -> tuple[Any, ...]:
+        system, case = self.system, self.case
+        tasks = [case.task(i, self.floor.whitening(case.prepared[i].measured)) for i in case.train]
+        free = [f.core() for f in self.free]
+        return system.kind, system.values(), system.active(keep_zero=True), tasks, free, case.settings()
+
+    def _fitted(self, solved: dict[str, Any]) -> Fitted:
+        values = {f.name: solved["values"][f.index] for f in self.free}
+        return Fitted(
+            added=self.added,
+            system=self.system.with_parameters(values),
+            free=self.free,
+            x=np.array(solved["x"]),
+            initial=tuple(tuple(own) for own in solved["initial"]),
+            runs=tuple(self._run(i, t, solved) for t, i in enumerate(self.case.train)),
+            at_bound=tuple(solved["at_bound"]),
+            informed=tuple(informed(solved["jacobian"], self.free).tolist()),
+            cost=solved["cost"],
+            prior_cost=solved["prior_cost"],
+            converged=solved["converged"],
+            message=solved["message"],
+            num_iterations=solved["iterations"],
+            effective=self.floor.effective,
+        )
+
+    def _run(self, i: int, t: int, solved: dict[str, Any]) -> Run:
+        ready = self.case.prepared[i]
+        _, samples = rows_of(self.floor, ready.measured)
+        own = (np.array(solved["initial"][t]) - self.case.own_mean(i)) / self.case.own_sd(i)
+        block = blocks_of(np.asarray(ready.core.time))[samples]
+        return Run(solved["residuals"][t], solved["jacobian"][t], solved["jacobian_initial"][t], own, block)
+
+
+def initial_state(case: Case, system: System, i: int) -> tuple[float, ...]:
+    """The free parts of the initial state of experiment i, fitted to its first 0.2 s by `system` as it is."""
+    first = case.beginning(i)
+    mean = tuple(first.own_mean(0).tolist())
+    if not mean or not np.isfinite(first.prepared[0].measured[case.measured]).any():
+        return mean
+    return Problem(case=first, floor=white(case.noise), system=system).solve(max_iterations=10).initial[0]
+
+
+@dataclass(frozen=True)
+class Fitter:
+    """Poses and solves fits of one case under one noise floor."""
+
+    case: Case
+    floor: Floor
+    cancel: _core.Cancel
+    seen: Sequence[Sensitivities] = ()
+
+    @cached_property
+    def whitening(self) -> list[_core.Whitening]:
+        """Of every experiment; of those held out along what was `seen` to differ from run to run."""
+        return whitenings(self.case, self.floor, self.seen)
+
+    def fit(
+        self,
+        system: System,
+        *,
+        added: Sequence[str] = (),
+        initial: Sequence[Sequence[float]] = (),
+        max_iterations: int = 25,
+        solve: bool = True,
+        known: bool = False,
+    ) -> Fitted:
+        """Fit `system` from its own values, with priors about the nominal ones, and the `initial` unknowns of each
+        experiment. `solve` False: only linearise there. `known`: fit those unknowns alone."""
+        problem = pose(self.case, self.floor, system, added=() if known else added, initial=initial, known=known)
+        if not solve:
+            return problem.linearise()
+        return problem.solve(cancel=self.cancel, max_iterations=max_iterations, tolerance=1e-6)
+
+    def under(self, level: float) -> Fitter:
+        """The same under noise of `level` times the power, for fits to the training experiments."""
+        floor = replace(self.floor, sd=[float(np.sqrt(level)) * sd for sd in self.floor.sd])
+        return replace(self, floor=floor)
+
+
+def pose(
+    case: Case,
+    floor: Floor,
+    system: System,
+    *,
+    added: Sequence[str] = (),
+    initial: Sequence[Sequence[float]] = (),
+    known: bool = False,
+) -> Problem:
+    """The fit of `system`, which has the effects `added` beyond the nominal ones, from its own values and from the
+    `initial` unknowns of each experiment. `known`: its parameters are, and only those unknowns are fitted."""
+    rows = [] if known else free_parameters(system, case.dataset.parameters, case.scales, added=added)
+    free = tuple(f.started(system.parameters[f.name]) for f in rows)
+    start = tuple(tuple(own) for own in initial)
+    return Problem(case=case, floor=floor, system=system, added=tuple(added), free=free, initial=start)

@@ -1,0 +1,86 @@
+"""What a fit is worth: leaving out by one Newton step against fitting again, run-to-run factors, one interval."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tendonlab as tl
+from tendonlab import _core
+from tendonlab.fitting.floor import friction_groups
+from tendonlab.fitting.noise import white
+from tendonlab.fitting.problem import Fitter, initial_state, pose
+
+
+@pytest.fixture(scope="module")
+def fitter(twin_case: Any) -> Fitter:
+    floor = white(twin_case.noise)
+    floor = replace(floor, sd=[20 * s for s in floor.sd])  # loose enough for the model to be about right
+    return Fitter(twin_case, floor, _core.Cancel())
+
+
+def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, twin_case: Any) -> None:
+    full = fitter.fit(twin_case.system)
+    others = [i for k, i in enumerate(twin_case.train) if k != 2]
+    initial = [s for k, s in enumerate(full.initial) if k != 2]
+    fewer = replace(fitter, case=twin_case.training_on(others)).fit(full.system, initial=initial)
+    step = full.leaving_out(2)
+    moved = max(abs(fewer.system.parameters[f.name] / full.system.parameters[f.name] - 1) for f in full.free)
+    assert moved > 1e-3
+    for f, sd in zip(full.free, full.uncertainty.sd, strict=True):
+        assert step.parameters[f.name] == pytest.approx(fewer.system.parameters[f.name], abs=0.5 * sd)
+
+
+def test_what_the_experiments_state_themselves_is_not_informed(fitter: Fitter, twin_case: Any) -> None:
+    """Of gravity, which every experiment knows, no residual says anything."""
+    known = tuple(replace(e, conditions={**e.conditions, "gravity_torque": 1.0}) for e in twin_case.experiments)
+    case = replace(twin_case, experiments=known)
+    fit = replace(fitter, case=case).fit(case.system, max_iterations=3)
+    assert fit.not_informed == ("gravity_torque",)
+    assert fit.system.parameters["gravity_torque"] == pytest.approx(case.system.parameters["gravity_torque"])
+
+
+def test_factors_from_run_to_run_are_found(twin_case: Any) -> None:
+    """One experiment whose joint friction is 10 % larger, simulated and fitted: its factor takes it up."""
+    case = replace(twin_case, scatter=tuple((tuple(g), 0.05) for g in friction_groups(twin_case.system)))
+    i = case.train[0]
+    own = [*case.prepared[i].initial_mean, 0.0, np.log(1.1)]
+    case = _measured(case, i, case.run(i, case.system, own)["outputs"]).training_on([i])
+    fit = Fitter(case, white(case.noise), _core.Cancel()).fit(case.system, known=True)
+    motor, joint = fit.initial[0][-2:]
+    assert joint == pytest.approx(np.log(1.1), rel=0.02)
+    assert motor == pytest.approx(0.0, abs=0.005)
+
+
+def test_the_initial_state_is_found_in_the_first_fifth_of_a_second(twin_case: Any) -> None:
+    """Noise of a later sample does not matter, and a start away from the prior's mean is found."""
+    i = twin_case.train[0]
+    own = twin_case.own_mean(i) + 0.5 * twin_case.own_sd(i)
+    outputs = twin_case.run(i, twin_case.system, own)["outputs"]
+    outputs[:, np.asarray(twin_case.prepared[i].core.time) > 0.5] += 1.0
+    fitted = initial_state(_measured(twin_case, i, outputs), twin_case.system, i)
+    assert fitted == pytest.approx(own, rel=1e-3, abs=1e-3 * float(np.min(twin_case.own_sd(i))))
+
+
+def test_identify_and_a_diagnosis_state_the_same_value_and_interval(twin_case: Any) -> None:
+    """Of the same model, fitted to the same experiments under the same noise, from a start nearby."""
+    table = tl.identify(twin_case.dataset, progress=False).parameters
+    case = replace(twin_case, experiments=twin_case.experiments)
+    start = case.system.with_parameters(
+        {n: 1.05 * case.system.parameters[n] for n in ("joint_coulomb", "joint_inertia")}
+    )
+    fit = pose(case, white(case.noise), start).solve()
+    assert [f.name for f in fit.free] == list(table.index)
+    for name, row in table.iterrows():
+        value, (low, high) = fit.value(str(name))
+        assert value == pytest.approx(row["value"], abs=0.1 * row["sd"])
+        assert high - low == pytest.approx(row["ci95_upper"] - row["ci95_lower"], rel=0.02)
+
+
+def _measured(case: Any, i: int, outputs: np.ndarray) -> Any:
+    """The case with these outputs measured in experiment i."""
+    ready = replace(case.prepared[i], measured=outputs)
+    return replace(case, prepared=(*case.prepared[:i], ready, *case.prepared[i + 1 :]))

@@ -1,0 +1,106 @@
+"""Noise of the outputs, on records whose answers are known."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.signal import lfilter
+
+from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
+from tendonlab.errors import DatasetError
+from tendonlab.fitting.floor import friction_groups
+from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, rows_of, sensor_noise
+from tendonlab.simulation.prepare import Replay, prepare
+
+TIME = np.arange(0.0, 4.0, 0.002)
+MOTION = 0.5 * np.sin(2 * np.pi * TIME)
+
+
+def noise_of(angle: np.ndarray, *, noise_sd: float | None = None, resolution: float | None = None) -> float:
+    """The noise of a joint's angle recorded as `angle`."""
+    frame = pd.DataFrame({"motor_torque": 0.0 * TIME, "joint_angle": angle}, index=pd.Index(TIME, name="t"))
+    signals = {
+        "motor_torque": SignalSpec("motor_torque", "u", "N*m", "input", True),
+        "joint_angle": SignalSpec("joint_angle", "q", "rad", "output", False, noise_sd=noise_sd, resolution=resolution),
+    }
+    dataset = Dataset(
+        name="joint", description="", kind="rigid_joint", axis="rotary", nominal_effects=(), controller=None,
+        parameters={"inertia": NominalParameter(0.5)}, signals=signals,
+        experiments=(Experiment(name="run", data=frame),), path=Path(),
+    )  # fmt: skip
+    system = dataset.system()
+    return float(sensor_noise(dataset, system, [prepare(e, system, Replay("free")) for e in dataset])[0])
+
+
+def test_white_noise_is_seen_beneath_the_motion() -> None:
+    measured = MOTION + 1e-3 * np.random.default_rng(2).normal(size=len(TIME))
+    assert noise_of(measured) == pytest.approx(1e-3, rel=0.1)  # three standard errors of a median over 2000 samples
+    assert noise_of(measured, noise_sd=3e-3) == 3e-3
+
+
+def test_rounding_counts_once() -> None:
+    """Readings that move by more than a step per sample hold their rounding as white noise of step/√12."""
+    step = 1e-4
+    found = noise_of(step * np.round(MOTION / step), resolution=step)
+    assert found == pytest.approx(step / np.sqrt(12), rel=0.25)  # differences are whole steps: their median is coarse
+
+
+def test_readings_that_repeat_are_as_noisy_as_their_rounding() -> None:
+    step = 0.1
+    assert noise_of(step * np.round(MOTION / step), resolution=step) == pytest.approx(step / np.sqrt(12))
+    assert noise_of(step * np.round(MOTION / step), noise_sd=1e-9, resolution=step) == pytest.approx(step / np.sqrt(12))
+
+
+def test_a_computed_record_is_no_more_exact_than_its_spread_allows_wherever_it_lies() -> None:
+    assert noise_of(MOTION) == pytest.approx(1e-6 * np.std(MOTION))
+    assert noise_of(MOTION + 100.0) == pytest.approx(1e-6 * np.std(MOTION))
+
+
+def test_what_never_moves_and_what_was_not_measured() -> None:
+    assert noise_of(0.0 * TIME) == 1.0
+    with pytest.raises(DatasetError, match="joint: no output of rigid_joint was measured; expected one of joint_angle"):
+        noise_of(np.nan * TIME)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
+def test_integrated_time_of_an_autoregression(memory: float) -> None:
+    """1 + 2 sum of a^k = (1 + a)/(1 - a)."""
+    rng = np.random.default_rng(3)
+    times = [integrated_time(lfilter([1.0], [1.0, -memory], rng.normal(size=20_000))) for _ in range(8)]
+    assert np.mean(times) == pytest.approx((1 + memory) / (1 - memory), rel=0.12)
+
+
+def test_integrated_time_of_nothing() -> None:
+    assert integrated_time(np.zeros(50)) == 1.0
+
+
+def test_rows_of_a_whitening_are_the_samples_that_count() -> None:
+    """An autoregression of order two needs two samples before each one that counts, also after a gap."""
+    measured = np.ones((3, 20))
+    measured[0, 8] = np.nan
+    measured[2] = np.nan
+    floor = Floor(np.ones(3), [[0.5, 0.1], [], []], [1.0, 2.0, 0.0], 0.0, repeated=True)
+    outputs, samples = rows_of(floor, measured)
+    assert outputs.tolist() == [0] * 15 + [1] * 20
+    assert samples.tolist() == [*range(2, 8), *range(11, 20), *range(20)]
+    assert floor.whitening(measured).rows() == 35
+
+
+def test_an_experiment_that_did_not_measure_an_output_is_whitened_without_it() -> None:
+    measured = np.ones((2, 20))
+    measured[1] = np.nan
+    assert Floor(np.ones(2), [[], []], [1.0, 1.0], 0.0, repeated=False).whitening(measured).rows() == 20
+
+
+@pytest.mark.parametrize(("duration", "lengths"), [(1.0, [100]), (3.9, [390]), (6.0, [200, 200, 200])])
+def test_blocks_are_at_least_2_s_long_and_equal(duration: float, lengths: list[int]) -> None:
+    time = 5.0 + np.linspace(0.0, duration, int(100 * duration), endpoint=True)
+    assert np.bincount(blocks_of(time)).tolist() == pytest.approx(lengths, abs=1)
+
+
+def test_friction_of_an_element_scales_together(twin_case: Any) -> None:
+    names = [p.name for p in twin_case.system.info.parameters]
+    groups = [{names[k] for k in group} for group in friction_groups(twin_case.system)]
+    assert groups == [{"motor_coulomb", "motor_viscous"}, {"joint_coulomb", "joint_viscous"}]
