@@ -107,4 +107,4 @@ def blocks_of(time: np.ndarray) -> np.ndarray:
     """Which contiguous block of at least 2 s each sample belongs to; blocks are as long as each other."""
     passed = time - time[0]
     num = max(1, int(passed[-1] / BLOCK))
-    return np.minimum((num * passed / max(passed[-1], 1e-300)).astype(int), num - 1)
+    return np.asarray(np.minimum((num * passed / max(passed[-1], 1e-300)).astype(int), num - 1))
