@@ -22,6 +22,7 @@ def fitter(twin_case: Any) -> Fitter:
     return Fitter(twin_case, floor, _core.Cancel())
 
 
+@pytest.mark.cpu(15)
 def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, twin_case: Any) -> None:
     full = fitter.fit(twin_case.system)
     others = [i for k, i in enumerate(twin_case.train) if k != 2]
@@ -65,6 +66,7 @@ def test_the_initial_state_is_found_in_the_first_fifth_of_a_second(twin_case: An
     assert fitted == pytest.approx(own, rel=1e-3, abs=1e-3 * float(np.min(twin_case.own_sd(i))))
 
 
+@pytest.mark.cpu(15)
 def test_identify_and_a_diagnosis_state_the_same_value_and_interval(twin_case: Any) -> None:
     """Of the same model, fitted to the same experiments under the same noise, from a start nearby."""
     table = tl.identify(twin_case.dataset, progress=False).parameters

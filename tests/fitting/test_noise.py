@@ -15,6 +15,7 @@ from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, rows_of, 
 from tendonlab.simulation.prepare import Replay, prepare
 
 TIME = np.arange(0.0, 4.0, 0.002)
+NOMINAL = {"inertia": 0.5, "gravity_torque": 0.0, "torque_constant": 1.0}
 MOTION = 0.5 * np.sin(2 * np.pi * TIME)
 
 
@@ -27,7 +28,7 @@ def noise_of(angle: np.ndarray, *, noise_sd: float | None = None, resolution: fl
     }
     dataset = Dataset(
         name="joint", description="", kind="rigid_joint", axis="rotary", nominal_effects=(), controller=None,
-        parameters={"inertia": NominalParameter(0.5)}, signals=signals,
+        parameters={n: NominalParameter(v) for n, v in NOMINAL.items()}, signals=signals,
         experiments=(Experiment(name="run", data=frame),), path=Path(),
     )  # fmt: skip
     system = dataset.system()
