@@ -25,7 +25,7 @@ ROOMS = (
 )  # fmt: skip
 LOOSE = {"__init__", "__main__", "errors", "seed", "arguments"}  # modules outside a folder
 # Imports against that order, each with its reason.
-UPWARD = {("fitting", "identification"): "informed.py relinearises the Problem that identification poses"}
+UPWARD: dict[tuple[str, str], str] = {}
 # Rooms in which modules may need each other, each with its reason.
 CIRCLES = {"report": "a Diagnosis draws itself: its methods load the plots and pages that show it"}
 
