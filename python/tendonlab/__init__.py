@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tendonlab._core import actuation, friction, loading, sensing, sheath, transmission
-    from tendonlab.data import Dataset, Experiment, load
+    from tendonlab.data.dataset import Dataset
+    from tendonlab.data.folder import load
     from tendonlab.diagnosis.diagnose import diagnose
     from tendonlab.errors import DatasetError, NumericalError, ParameterError
     from tendonlab.identification.identify import identify
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
     from tendonlab.report.diagnosis import Diagnosis
     from tendonlab.simulation.catalog import kinds, system_info
+    from tendonlab.simulation.records import Experiment
     from tendonlab.simulation.sweep import sweep
     from tendonlab.simulation.system import System
     from tendonlab.simulation.trajectory import Trajectory
@@ -49,7 +51,8 @@ __all__ = [
 # Where each public name is defined: a module is loaded when its first name is used, so that the import takes no time.
 _HOMES = {
     "tendonlab._core": "actuation friction loading sensing sheath transmission",
-    "tendonlab.data": "Dataset Experiment load",
+    "tendonlab.data.dataset": "Dataset",
+    "tendonlab.data.folder": "load",
     "tendonlab.diagnosis.diagnose": "diagnose",
     "tendonlab.errors": "DatasetError NumericalError ParameterError",
     "tendonlab.identification.identify": "identify",
@@ -57,6 +60,7 @@ _HOMES = {
     "tendonlab.mechanics.tendons": "BranchLosses Reducer TendonTransmission",
     "tendonlab.report.diagnosis": "Diagnosis",
     "tendonlab.simulation.catalog": "kinds system_info",
+    "tendonlab.simulation.records": "Experiment",
     "tendonlab.simulation.sweep": "sweep",
     "tendonlab.simulation.system": "System",
     "tendonlab.simulation.trajectory": "Trajectory",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 import re
+import sys
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
@@ -83,6 +85,16 @@ def test_axes_and_outputs_carry_their_units() -> None:
     assert units == {"coulomb": "N*m", "t": "s", "joint_angle": "rad", "joint_velocity": "rad/s"}
 
 
+def test_a_sweep_pickles_to_its_equal() -> None:
+    swept = tl.sweep(SIM, {"coulomb": [0.02]}, experiment=PUSHED, progress=False)
+    assert swept.identical(pickle.loads(pickle.dumps(swept)))
+
+
+def test_what_is_no_system_is_refused() -> None:
+    with pytest.raises(tl.ParameterError, match="system = 'rig': expected a System, such as"):
+        tl.sweep("rig", GRID, experiment=PUSHED)  # type: ignore[arg-type]
+
+
 def test_whatever_runs_it_the_bits_are_the_same() -> None:
     swept = tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
     with ThreadPoolExecutor(1) as thread, ProcessPoolExecutor(2, mp_context=get_context("spawn")) as processes:
@@ -148,8 +160,26 @@ def test_a_missing_input_is_named() -> None:
         tl.sweep(SIM, GRID, experiment=PUSHED.rename(columns={"motor_torque": "torque"}), progress=False)
 
 
-def test_progress_is_shown_only_where_it_is_wanted(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_in_a_log_is_whole_lines(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tendonlab.progress.INTERVAL", 0.0)
     tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
     assert capsys.readouterr() == ("", "")
     tl.sweep(SIM, GRID, experiment=PUSHED)
+    assert capsys.readouterr().err.splitlines() == [f"sweep: {k} of 6 runs" for k in range(1, 7)]
+
+
+def test_progress_in_a_terminal_is_a_bar(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    tl.sweep(SIM, GRID, experiment=PUSHED)
     assert re.search(r"sweep: 100%.* 6/6 ", capsys.readouterr().err)
+
+
+def test_progress_in_a_notebook_is_no_error(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+    monkeypatch.setattr("tendonlab.progress.find_spec", lambda name: None)  # no widgets
+    tl.sweep(SIM, GRID, experiment=PUSHED)
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert re.search(r"sweep: 100%.* 6/6 ", printed.out)

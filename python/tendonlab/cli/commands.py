@@ -57,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="tendonlab",
         description="Why does the simulator of a cable- or tendon-driven mechanism miss the rig?",
-        epilog="Start with `tendonlab demo`; `tendonlab COMMAND --help` tells more.",
+        epilog="Start with `tendonlab demo`; `tendonlab COMMAND --help` explains a command.",
     )
     parser.add_argument("--version", action="version", version=f"tendonlab {__version__}")
     commands = _commands(parser, dest="command", metavar="COMMAND")
@@ -68,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _commands(parser: argparse.ArgumentParser, *, dest: str, metavar: str) -> Any:
-    """What stands for one of several commands; without any of them, the help of all."""
+    """Subparsers for several commands; without any of them, the help of all is printed."""
 
     def explain(_: Arguments) -> int:
         parser.print_help()
@@ -124,7 +124,9 @@ def _add_effects(commands: Any) -> None:
 
 
 def _add_systems(commands: Any) -> None:
-    _add_axis(_command(commands, "systems", _systems, "list the systems, with equations, signals and parameters"))
+    parser = _command(commands, "systems", _systems, "list the systems, with equations, signals and parameters")
+    parser.add_argument("kinds", nargs="*", metavar="KIND", help="default: all systems")
+    _add_axis(parser)
 
 
 def _add_datasets(commands: Any) -> None:
@@ -146,18 +148,14 @@ def _add_axis(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_progress(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--quiet", action="store_true", help="show no progress (none is shown in a pipe)")
-
-
-def _progress(given: Arguments) -> bool:
-    return not given.quiet and sys.stderr.isatty()
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _demo(given: Arguments) -> int:
     from tendonlab.cli.demo import demo
 
     print("The bundled rig: a motor turns a pendulum through an elastic cable; its simulator lacks one effect.\n")
-    _print_diagnosis(demo(given.out, progress=_progress(given)), given.out)
+    _print_diagnosis(demo(given.out, progress=not given.quiet), given.out)
     print("Yours: tendonlab diagnose FOLDER --out DIR (the README shows the dataset.toml it needs)")
     return 0
 
@@ -165,20 +163,24 @@ def _demo(given: Arguments) -> int:
 def _diagnose(given: Arguments) -> int:
     from tendonlab.data import load
     from tendonlab.diagnosis.diagnose import diagnose
+    from tendonlab.report.write import prepare_folder
 
-    found = diagnose(load(given.dataset), seed=given.seed, progress=_progress(given))
+    rig = load(_folder(given.dataset))
     if given.out is not None:
-        found.report(given.out, figures=not given.no_figures)
-    _print_diagnosis(found, given.out)
+        prepare_folder(given.out)
+    diagnosis = diagnose(rig, seed=given.seed, progress=not given.quiet)
+    if given.out is not None:
+        diagnosis.report(given.out, figures=not given.no_figures)
+    _print_diagnosis(diagnosis, given.out)
     return 0
 
 
-def _print_diagnosis(found: Diagnosis, out: Path | None) -> None:
+def _print_diagnosis(diagnosis: Diagnosis, out: Path | None) -> None:
     from tendonlab.cli.text import diagnosis_text
 
-    print(diagnosis_text(found))
-    told = "none written; --out DIR writes one" if out is None else out / "report.html"
-    print(f"\n{found.seconds:.0f} s, seed {found.seed}. Report: {told}")
+    print(diagnosis_text(diagnosis))
+    report = "none written; --out DIR writes one" if out is None else out / "report.html"
+    print(f"\n{diagnosis.seconds:.0f} s, seed {diagnosis.seed}. Report: {report}")
 
 
 def _identify(given: Arguments) -> int:
@@ -186,8 +188,9 @@ def _identify(given: Arguments) -> int:
     from tendonlab.data import load
     from tendonlab.identification.identify import identify
 
-    rig = load(given.dataset)
-    fit = identify(rig, effects=given.effects, num_starts=given.starts, progress=_progress(given))
+    rig = load(_folder(given.dataset))
+    _require_writable(given.out)
+    fit = identify(rig, effects=given.effects, num_starts=given.starts, progress=not given.quiet)
     print(identification_text(fit))
     if given.out is not None:
         given.out.write_text(json.dumps(fit.to_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
@@ -200,7 +203,8 @@ def _simulate(given: Arguments) -> int:
     from tendonlab.data import load
     from tendonlab.simulation.sweep import refuse_conditions
 
-    rig = load(given.dataset)
+    rig = load(_folder(given.dataset))
+    _require_writable(given.out)
     experiment = _experiment(rig, given.experiment)
     changes = _settings(given.set)
     refuse_conditions(experiment, changes)
@@ -214,25 +218,44 @@ def _simulate(given: Arguments) -> int:
     return 0
 
 
+def _folder(name: str) -> str:
+    """The folder of a dataset. Raises DatasetError for the name of a public recording without a folder of that name."""
+    from tendonlab.data.datasets import list_datasets
+
+    if name in list_datasets() and not Path(name).exists():
+        raise DatasetError(f"{name}: no such folder; `tendonlab datasets prepare {name}` fetches this recording")
+    return name
+
+
+def _require_writable(file: Path | None) -> None:
+    """Raise ParameterError, before anything is computed, where a file cannot be written."""
+    if file is None:
+        return
+    if file.is_dir():
+        raise ParameterError(f"--out {file}: is a folder; expected the name of a file")
+    if not os.access(file if file.exists() else file.parent, os.W_OK):
+        raise ParameterError(f"--out {file}: cannot be written; expected a file in an existing folder")
+
+
 def _experiment(rig: Dataset, name: str | None) -> Experiment:
     return rig[name] if name is not None else [*rig.test, *rig.train][0]
 
 
 def _settings(texts: Sequence[str]) -> dict[str, float]:
-    found = {}
+    values = {}
     for text in texts:
         name, equals, value = text.partition("=")
         try:
-            found[name] = float(value)
+            values[name] = float(value)
         except ValueError:
             equals = ""
         if not (name and equals):
             raise ParameterError(f"--set {text}: expected NAME=VALUE with a number, such as joint_coulomb=0.05")
-    return found
+    return values
 
 
 def _changed(system: System, effects: Sequence[str], values: dict[str, float]) -> System:
-    """`system` with effects and values; those of an added effect go in with it, for it may have no default."""
+    """`system` with effects and values. The values of an added effect are set with it: it may have no default."""
     own = {name: {p: values[p] for p in system.info.effect(name).parameters if p in values} for name in effects}
     used = {name for given in own.values() for name in given}
     changed = system.with_effects(own) if own else system
@@ -252,7 +275,7 @@ def _systems(given: Arguments) -> int:
     from tendonlab.cli.text import system_text
     from tendonlab.simulation.catalog import kinds, system_info
 
-    print("\n\n".join(system_text(system_info(kind), axis=given.axis) for kind in kinds()))
+    print("\n\n".join(system_text(system_info(kind), axis=given.axis) for kind in given.kinds or kinds()))
     return 0
 
 

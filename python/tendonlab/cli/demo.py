@@ -20,9 +20,9 @@ def bundled(name: str = NAME) -> Path:
     Raises DatasetError where the package carries none of that name."""
     root = files("tendonlab").joinpath("bundled")
     datasets = (item for item in root.iterdir() if item.joinpath("dataset.toml").is_file()) if root.is_dir() else ()
-    carried = sorted(item.name for item in datasets)
-    if name not in carried:
-        known = f"expected one of {', '.join(carried)}" if carried else "this installation carries none; reinstall it"
+    names = sorted(item.name for item in datasets)
+    if name not in names:
+        known = f"expected one of {', '.join(names)}" if names else "this installation has none; reinstall it"
         raise DatasetError(f"bundled dataset {name!r}: {known}")
     return Path(str(root.joinpath(name)))
 
@@ -31,7 +31,9 @@ def demo(out: str | Path = "tendonlab-demo", *, seed: int = 0, progress: bool = 
     """Diagnose the bundled rig and write its report and figures into the folder `out`."""
     from tendonlab.data import load
     from tendonlab.diagnosis.diagnose import diagnose
+    from tendonlab.report.write import prepare_folder
 
-    found = diagnose(load(bundled()), seed=seed, progress=progress)
-    found.report(out)
-    return found
+    folder = prepare_folder(out)
+    diagnosis = diagnose(load(bundled()), seed=seed, progress=progress)
+    diagnosis.report(folder)
+    return diagnosis

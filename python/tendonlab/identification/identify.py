@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from tqdm import tqdm
 
 from tendonlab import _core
 from tendonlab.data import require_dataset
@@ -22,6 +21,7 @@ from tendonlab.fitting.noise import rows_of, white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Problem, pose
 from tendonlab.identification.result import Identification
+from tendonlab.progress import track
 from tendonlab.seed import generator
 from tendonlab.simulation.catalog import unit
 
@@ -111,7 +111,7 @@ def _solve(starts: Sequence[Problem], *, progress: bool) -> Fitted:
     with ThreadPoolExecutor(max_workers=min(len(starts), os.cpu_count() or 1)) as pool:
         jobs = [pool.submit(start.solve, cancel=cancel) for start in starts]
         try:
-            for _ in tqdm(as_completed(jobs), total=len(jobs), desc="identify", unit="start", disable=not progress):
+            for _ in track(as_completed(jobs), total=len(jobs), label="identify", unit="start", shown=progress):
                 pass
         except KeyboardInterrupt:
             cancel.set()

@@ -14,6 +14,7 @@ from tqdm import tqdm
 
 from tendonlab.arguments import samples
 from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.progress import track
 
 SAME_COST = 1e-4  # relative: starts that end this near the best have found the same optimum
 AT_BOUND = 1e-6  # of the range: descents stay inside the box and come as near as this and nearer
@@ -131,7 +132,7 @@ def multistart(descent: Descent, points: np.ndarray, progress: bool) -> Found:
     ends: list[Any | None] = []
     note = ""
     try:
-        for point in tqdm(points, desc="search", unit="start", disable=not progress):
+        for point in track(points, label="search", total=len(points), unit="start", shown=progress):
             ends.append(descent.least(point))
     except KeyboardInterrupt:
         if not any(end is not None for end in ends):

@@ -10,18 +10,17 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
-from tqdm import tqdm
 
 from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.progress import track
 from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.prepare import as_experiment
 from tendonlab.simulation.records import Experiment
+from tendonlab.simulation.system import System, require_system
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-    from tendonlab.simulation.system import System
 
 
 def sweep(
@@ -35,15 +34,16 @@ def sweep(
 ) -> xr.Dataset:
     """Simulate `experiment` at every point of `grid`: parameter name -> values, SI, shape (n,).
 
-    Gives one variable an output, in its unit (attribute `unit`), with the grid's parameters in the order given and the
+    Gives one variable per output, in its unit (attribute `unit`), with the grid's parameters in the order given and the
     time "t", s, as dimensions. The coordinate `message`, over the grid, is empty where the run went well; elsewhere it
-    says what failed, or "interrupted" after Ctrl-C, and the outputs hold NaN: one bad point costs no other. The same
-    call gives the same bits, whatever runs it.
+    says what failed, or "interrupted" after Ctrl-C, and the outputs hold NaN: a bad point does not stop the others. The
+    same call gives the same bits with every executor.
     `tolerance`: relative error of a step. `executor`: any concurrent.futures executor, which stays open; without one,
-    a thread a processor (the core releases the interpreter).
+    one thread per processor (the core releases the interpreter).
     Raises ParameterError, before anything is simulated, for an unknown parameter, one that the experiment's conditions
-    fix, a value outside its bounds or given twice, or an axis without values; DatasetError for a missing input;
-    NumericalError where every point failed."""
+    fix, a value outside its bounds or given twice, an axis without values, or anything but a System; DatasetError for
+    a missing input; NumericalError where every point failed."""
+    require_system(system)
     if not isinstance(grid, Mapping):
         raise ParameterError(f"grid is a {type(grid).__name__}: expected a mapping of parameter names to values")
     axes = {name: _axis(name, values) for name, values in grid.items()}
@@ -58,8 +58,8 @@ def sweep(
     with _threads() if executor is None else _borrowed(executor) as pool:
         jobs = {pool.submit(_outputs, one, experiment, tolerance): place for place, one in enumerate(systems)}
         try:
-            for job in tqdm(as_completed(jobs), total=len(jobs), desc="sweep", unit="run", disable=not progress):
-                messages[jobs[job]] = _keep(job, outputs[jobs[job]])
+            for job in track(as_completed(jobs), total=len(jobs), label="sweep", unit="run", shown=progress):
+                messages[jobs[job]] = _record(job, outputs[jobs[job]])
         except BaseException as error:
             for job in jobs:
                 job.cancel()
@@ -75,8 +75,8 @@ def refuse_conditions(experiment: Experiment | pd.DataFrame, names: Iterable[str
     fixed = experiment.conditions if isinstance(experiment, Experiment) else {}
     for name in names:
         if name in fixed:
-            told = f"the conditions of the experiment fix it at {fixed[name]:g}"
-            raise ParameterError(f"{name}: {told}; expected another parameter, or the experiment's `data` alone")
+            reason = f"the conditions of the experiment fix it at {fixed[name]:g}"
+            raise ParameterError(f"{name}: {reason}; expected another parameter, or the experiment's `data` alone")
 
 
 def _axis(name: str, values: Sequence[float] | np.ndarray) -> np.ndarray:
@@ -110,8 +110,8 @@ def _outputs(system: System, experiment: Experiment | pd.DataFrame, tolerance: f
     return system.simulate(experiment, tolerance=tolerance).outputs.to_numpy().T
 
 
-def _keep(job: Future[np.ndarray], into: np.ndarray) -> str:
-    """Copy the outputs of a run; what failed, or nothing. A fault that all runs share is raised."""
+def _record(job: Future[np.ndarray], into: np.ndarray) -> str:
+    """Copy the outputs of a run; gives the message of a run that failed, or "". Raises errors that all runs share."""
     try:
         into[:] = job.result()
     except NumericalError as error:
@@ -131,5 +131,5 @@ def _dataset(
         for k, s in enumerate(signals)
     }
     coordinates = {name: (name, values, {"unit": system.unit(name)}) for name, values in axes.items()}
-    said = (tuple(axes), np.array(messages, dtype=object).reshape(shape))
-    return xr.Dataset(variables, coords={**coordinates, "t": ("t", time, {"unit": "s"}), "message": said})
+    reasons = (tuple(axes), np.array(messages, dtype=object).reshape(shape))
+    return xr.Dataset(variables, coords={**coordinates, "t": ("t", time, {"unit": "s"}), "message": reasons})

@@ -7,14 +7,13 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from tqdm import tqdm
-
 from tendonlab import _core
 from tendonlab.diagnosis.search.refit import refit
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
+from tendonlab.progress import track
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class Workshop:
         """All candidates as the screen sees them, most promising first."""
         names = [c for c in candidates(fitter.case, base) if self.library is None or c in self.library]
         work = self.pool.map(lambda name: screen(fitter, base, name), names)
-        shown = tqdm(work, desc=f"screen {label}", total=len(names), disable=not self.progress, leave=False)
+        shown = track(work, label=f"screen {label}", total=len(names), unit="effect", shown=self.progress, stays=False)
         return sorted(shown, key=lambda screened: -screened.gain)
 
     def refit_all(
@@ -43,7 +42,7 @@ class Workshop:
         rival_gain = max((t.evidence_gain for t in first), default=0.0)
         rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, rival_gain=rival_gain), rest)
-        shown = tqdm(work, desc=f"refit {label}", total=len(rest), disable=not self.progress, leave=False)
+        shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
         trials = [*first, *(trial for tried in shown for trial in tried)]
         return sorted(trials, key=lambda trial: -trial.evidence_gain)
 
