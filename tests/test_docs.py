@@ -84,6 +84,12 @@ def test_systems_exist_and_the_readme_offers_each() -> None:
     assert {name for cell in of_papers for name in re.findall(r"`(\w+)`", cell)} <= set(kinds())
 
 
+def test_modules_that_the_method_names_exist() -> None:
+    modules = set(re.findall(r"`([\w/]+\.(?:py|hpp))`", PAGES["docs/method.md"]))
+    assert len(modules) > 10
+    assert [m for m in modules if not any((ROOT / top / m).is_file() for top in ("", "python/tendonlab"))] == []
+
+
 def test_every_key_of_a_dataset_is_documented(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the reader allows anywhere in dataset.toml has a row of its own."""
     allowed: set[str] = set()
