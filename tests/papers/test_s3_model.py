@@ -28,7 +28,7 @@ from tendonlab.papers.s3 import (
     table_1,
     weakness,
 )
-from tendonlab.papers.s3.chain import _Equations
+from tendonlab.papers.s3.chain import ChainEquations
 from tendonlab.papers.s3.rig import DEGREE
 
 SOFT = replace(paper_parameters(), s_v=2.0)
@@ -225,7 +225,7 @@ def test_the_jacobian_of_the_chain_is_that_of_its_rate() -> None:
     rng = np.random.default_rng(1)
     for slack in (False, True):
         chain = Chain(shape=paper_shape(3), pretension=100.0, slack=slack, num_nodes=4)
-        of = _Equations.of(chain, Trajectory("sine", 15.0, 10.0))
+        of = ChainEquations.of(chain, Trajectory("sine", 15.0, 10.0))
         y = rng.normal(0.0, 1e-3, of.size)
         exact = of.jacobian(0.3, y)
         for k in range(of.size):
@@ -245,7 +245,7 @@ def test_two_steppers_agree_on_the_chain() -> None:
 def test_the_chain_s_friction_adds_up_to_the_model_s_offset() -> None:
     chain = Chain(shape=paper_shape(4), pretension=200.0)
     law = TransmissionCoefficients.of(paper_shape(4), mu=0.056, T_s=200.0, r_in=0.05, r_out=0.05)
-    assert np.sum(_Equations.of(chain, Trajectory("sine", 1.0, 1.0)).level) == pytest.approx(-law.offset, rel=1e-12)
+    assert np.sum(ChainEquations.of(chain, Trajectory("sine", 1.0, 1.0)).level) == pytest.approx(-law.offset, rel=1e-12)
 
 
 def test_a_group_has_the_four_trajectories_of_table_1() -> None:

@@ -77,7 +77,7 @@ class Chain:
         ("LSODA" is its backward differences in compiled code, three times as fast as "BDF").
         Raises NumericalError where the integration fails."""
         time = np.arange(round(duration * sample_rate)) / sample_rate
-        equations = _Equations.of(self, trajectory)
+        equations = ChainEquations.of(self, trajectory)
         run = solve_ivp(
             equations.rate, (0.0, time[-1]), np.zeros(equations.size), method=method, t_eval=time, rtol=rtol, atol=atol,
             max_step=longest_step, jac=equations.jacobian,
@@ -97,7 +97,7 @@ def with_noise(log: pd.DataFrame, *, seed: int | np.random.Generator) -> pd.Data
 
 
 @dataclass(frozen=True, eq=False)
-class _Equations:
+class ChainEquations:
     """Right-hand side and Jacobian. State: q_A, v_A, q_1 … q_n, z_1 … z_n, q_B, v_B."""
 
     chain: Chain
@@ -110,7 +110,7 @@ class _Equations:
     stretching: np.ndarray  # d e / d state, (n + 1, size)
 
     @classmethod
-    def of(cls, chain: Chain, trajectory: Trajectory) -> _Equations:
+    def of(cls, chain: Chain, trajectory: Trajectory) -> ChainEquations:
         rig, p, n = chain.rig, chain.friction.in_unit("rad/s"), chain.num_nodes
         phi = chain.node_turning()
         k = (n + 1) * 2.0 * rig.EA * rig.r_in**2 / rig.L
