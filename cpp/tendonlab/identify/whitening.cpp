@@ -1,6 +1,6 @@
 #include "tendonlab/identify/whitening.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "tendonlab/core/error.hpp"
@@ -53,9 +53,10 @@ void Whitening::find_basis(const Eigen::Ref<const Eigen::MatrixXd>& directions, 
   if (k == 0) return;
   if (!directions.allFinite()) throw ParameterError("directions: not finite; expected finite numbers");
   const Eigen::MatrixXd scaled = directions * Eigen::Map<const Eigen::VectorXd>(spread.data(), k).asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
-  basis = svd.matrixU();
-  gain = (1.0 + svd.singularValues().array().square()).rsqrt() - 1.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(scaled.transpose() * scaled);
+  basis = scaled * gram.eigenvectors();
+  const Eigen::ArrayXd root = (1.0 + gram.eigenvalues().array().max(0.0)).sqrt();
+  gain = -1.0 / (root * (1.0 + root));  // (1/root - 1) / s^2, finite where s = 0
 }
 
 void Whitening::filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out) const {

@@ -50,7 +50,7 @@ class Whitening {
   RowMatrix measured;
   std::vector<Run> runs;
   Eigen::Index num_rows = 0;
-  Eigen::MatrixXd basis;  ///< left singular vectors of V diag(tau)
-  Eigen::VectorXd gain;   ///< 1/sqrt(1 + s^2) - 1 along them
+  Eigen::MatrixXd basis;  ///< left singular vectors of V diag(tau), each times its singular value s
+  Eigen::VectorXd gain;   ///< (1/sqrt(1 + s^2) - 1) / s^2 for each of them
 };
 }  // namespace tendonlab::identify

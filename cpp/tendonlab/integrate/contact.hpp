@@ -55,14 +55,14 @@ class Contact {
   template <class Inputs>
   T sliding_velocity(int m, const Y& y, const F& frame, const Inputs& in) const {
     if constexpr (general)
-      return system.couple(y.at, frame.mode, in).port[static_cast<std::size_t>(representative[m])].velocity;
+      return couple(system, y.at, frame.mode, in).port[static_cast<std::size_t>(representative[m])].velocity;
     else
       return along(system, representative[m], y.at.velocity);
   }
   template <class Inputs>
   T stretch(int m, const Y& y, const F& frame, const Inputs& in) const {
     if constexpr (general)
-      return system.couple(y.at, frame.mode, in).port[static_cast<std::size_t>(side_port[m])].position;
+      return couple(system, y.at, frame.mode, in).port[static_cast<std::size_t>(side_port[m])].position;
     else
       return along(system, side_port[m], y.at.position);
   }
@@ -149,7 +149,7 @@ class Contact {
   Breakaway breakaway(int m, double direction, const Y& y, const F& frame, const Inputs& in) const {
     auto pushed = frame.mode;
     pushed[static_cast<std::size_t>(m)] = direction;
-    const auto c = system.couple(y.at, pushed, in);
+    const auto c = couple(system, y.at, pushed, in);
     const auto& geometry = geometry_of(system, c);
     Breakaway at;
     unroll<slots<System>>([&](auto i) {
@@ -169,7 +169,7 @@ class Contact {
   /// What friction adds to the force of each sticking port: together it holds them, each with the same share of what it
   /// breaks away at.
   template <class Inputs>
-  std::array<T, slots<System>> borne(const Y& y, const F& frame, const Inputs& in) const {
+  [[gnu::noinline]] std::array<T, slots<System>> borne(const Y& y, const F& frame, const Inputs& in) const {
     std::array<T, slots<System>> force{};
     const auto push = holding(y, frame, in);
     for (std::size_t m = 0; m < directions; ++m) {
@@ -252,7 +252,7 @@ class Contact {
   template <class Inputs>
   decltype(auto) geometry(const Y& y, const F& frame, const Inputs& in) const {
     if constexpr (systems::moving<System>)
-      return system.couple(y.at, frame.mode, in);
+      return couple(system, y.at, frame.mode, in);
     else
       return (system);
   }

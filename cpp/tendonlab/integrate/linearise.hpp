@@ -66,6 +66,12 @@ struct SlotBlocks {
   }
 };
 
+template <int columns, class Slot, class T, class D>
+[[gnu::noinline, gnu::flatten]] SlotBlocks<Slot, T, columns> slot_blocks(const Slot& slot, const Sliding<D>& port,
+                                                                         const T& z) {
+  return {slot, port, z};
+}
+
 /// The ports in duals of (positions, velocities, time).
 template <class System, class T, class Inputs>
 TENDONLAB_INLINE auto couple_in_duals(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
@@ -78,7 +84,7 @@ TENDONLAB_INLINE auto couple_in_duals(const System& system, const StateOf<System
     at.velocity[j] = variable<D>(y.at.velocity[j], n + static_cast<int>(j));
   }
   at.time = variable<D>(y.at.time, 2 * n);
-  return system.couple(at, frame.mode, in);
+  return couple_for_step<repeats_text<System, T>>(system, at, frame.mode, in);
 }
 
 template <class T>
@@ -105,7 +111,12 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
   if (slot.active == 0) return;
   T z(0.0);
   if constexpr (has > 0) z = y.memory[m];
-  const SlotBlocks<Slot, T, columns> b(slot, coupled.port[i], z);
+  const auto b = [&] {
+    if constexpr (repeats_text<System, T>)
+      return SlotBlocks<Slot, T, columns>(slot, coupled.port[i], z);
+    else
+      return slot_blocks<columns>(slot, coupled.port[i], z);
+  }();
   unroll<n>([&](auto j) __attribute__((always_inline)) {
     if constexpr (System::joined[i][j]) {
       const auto& arm = geometry_of(system, coupled).lever[i][j];

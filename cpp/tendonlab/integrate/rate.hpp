@@ -76,11 +76,44 @@ TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& co
     return system;
 }
 
+/// Whether every stage of a step repeats the text of its system. That is faster for plain numbers in a system of few
+/// slots; elsewhere the call costs nothing against the work, and repeated text compiles for minutes.
+template <class System, class T>
+inline constexpr bool repeats_text = std::is_same_v<T, double> && (slots<System> < 5);
+
+/// `system.couple`, compiled once for each scalar.
+template <class System, class S, int n, class Modes, class Inputs>
+[[gnu::noinline, gnu::flatten]] auto couple(const System& system, const Motion<S, n>& at, const Modes& mode,
+                                            const Inputs& in) {
+  return system.couple(at, mode, in);
+}
+template <bool inlines, class System, class S, int n, class Modes, class Inputs>
+TENDONLAB_INLINE auto couple_for_step(const System& system, const Motion<S, n>& at, const Modes& mode,
+                                      const Inputs& in) {
+  if constexpr (inlines)
+    return system.couple(at, mode, in);
+  else
+    return couple(system, at, mode, in);
+}
+/// `slot.respond`, compiled once for each type of slot and scalar.
+template <class Slot, class Port, class S>
+[[gnu::noinline, gnu::flatten]] Response<S> respond(const Slot& slot, const Port& at, const S& z) {
+  return slot.respond(at, z);
+}
+template <bool inlines, class Slot, class Port, class S>
+TENDONLAB_INLINE Response<S> respond_for_step(const Slot& slot, const Port& at, const S& z) {
+  if constexpr (inlines)
+    return slot.respond(at, z);
+  else
+    return respond(slot, at, z);
+}
+
 template <class System, class T, class Inputs>
-TENDONLAB_INLINE auto rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
-                           const Inputs& in) {
+TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
+                                   const Inputs& in) {
   constexpr int n = System::dof;
-  const auto c = system.couple(y.at, frame.mode, in);
+  constexpr bool inlines = repeats_text<System, T>;
+  const auto c = couple_for_step<inlines>(system, y.at, frame.mode, in);
   const auto& geometry = geometry_of(system, c);
   Rate<T, n, memories<System>> r;
   r.acceleration = c.applied;
@@ -90,7 +123,7 @@ TENDONLAB_INLINE auto rate(const System& system, const StateOf<System, T>& y, co
     if (slot.active == 0) return;
     T z(0.0);
     if constexpr (has > 0) z = y.memory[m];
-    const Response<T> f = slot.respond(c.port[i], z);
+    const Response<T> f = respond_for_step<inlines>(slot, c.port[i], z);
     if constexpr (has > 0) r.memory[m] = f.rate;
     unroll<n>([&](auto j) __attribute__((always_inline)) {
       if constexpr (System::joined[i][j]) r.acceleration[j] = r.acceleration[j] - geometry.lever[i][j] * f.force;
@@ -99,5 +132,10 @@ TENDONLAB_INLINE auto rate(const System& system, const StateOf<System, T>& y, co
   for (std::size_t j = 0; j < n; ++j) r.acceleration[j] = r.acceleration[j] * geometry.inverse_inertia[j];
   if (frame.holds) frame.project([&](int j) -> T& { return r.acceleration[static_cast<std::size_t>(j)]; });
   return r;
+}
+template <class System, class T, class Inputs>
+[[gnu::noinline, gnu::flatten]] auto rate(const System& system, const StateOf<System, T>& y,
+                                          const Frame<System, T>& frame, const Inputs& in) {
+  return inlined_rate(system, y, frame, in);
 }
 }  // namespace tendonlab::integrate

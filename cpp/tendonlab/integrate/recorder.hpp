@@ -16,7 +16,7 @@ class Instant {
 
   /// What the ports see.
   const auto& coupled() {
-    if (!seen) seen = contact.system.couple(y.at, frame.mode, in);
+    if (!seen) seen = couple(contact.system, y.at, frame.mode, in);
     return *seen;
   }
   /// The force at port i: that of its laws, and where it sticks its share of what holds it.
@@ -25,7 +25,7 @@ class Instant {
     constexpr auto slot = static_cast<std::size_t>(i);
     T z(0.0);
     if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
-    const T own = std::get<slot>(contact.system.slot).respond(coupled().port[slot], z).force;
+    const T own = respond(std::get<slot>(contact.system.slot), coupled().port[slot], z).force;
     if constexpr (System::ports[slot].direction >= 0)
       if (contact.sticks(i, frame)) {
         if (!borne) borne = contact.borne(y, frame, in);

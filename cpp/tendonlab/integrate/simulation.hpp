@@ -248,7 +248,7 @@ class Simulation {
   /// The scale of each memory follows the friction level it stands for.
   void refresh() {
     if (!remembers) return;
-    const auto c = system.couple(y.at, frame.mode, drive);
+    const auto c = couple(system, y.at, frame.mode, drive);
     unroll<slots<System>>([&](auto i) {
       if constexpr (SlotOf<System, i>::states > 0) {
         const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);

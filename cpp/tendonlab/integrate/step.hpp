@@ -49,7 +49,10 @@ TENDONLAB_INLINE Y stage(const System& system, const Y& y, const Frame<System, T
   Rate<T, n, nz> f = blocks.rate;
   if constexpr (i > 0) {
     at.at.time = y.at.time + Tableau::c[i] * h;
-    f = rate(system, at, frame, in);
+    if constexpr (repeats_text<System, T>)
+      f = inlined_rate(system, at, frame, in);
+    else
+      f = rate(system, at, frame, in);
   }
   const Plain<T> per_h = 1.0 / h;
   for (std::size_t j = 0; j < n; ++j) {

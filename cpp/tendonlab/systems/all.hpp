@@ -2,6 +2,7 @@
 #include "tendonlab/systems/bowden_pair.hpp"
 #include "tendonlab/systems/cable_joint.hpp"
 #include "tendonlab/systems/ccsrm.hpp"
+#include "tendonlab/systems/ccsrm_elastic.hpp"  // part of ccsrm
 #include "tendonlab/systems/ccsrm_tensions.hpp"
 #include "tendonlab/systems/friction_map.hpp"
 #include "tendonlab/systems/rigid_joint.hpp"

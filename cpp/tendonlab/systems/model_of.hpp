@@ -242,8 +242,12 @@ class ModelOf final : public Model {
   const SystemInfo description = describe<Of>();
 };
 
-/// A system that an effect turns into another one, with more degrees of freedom: its `Grown`, of the same tables, takes
-/// its place while the effect `grown_by` is on, so that whoever does without pays nothing for it.
+/// The model of a system. Each is compiled once, in a file of its own; whoever lists or joins systems asks for it here.
+template <template <class> class Of>
+std::unique_ptr<Model> make_model();
+
+/// A system that an effect turns into a system with more degrees of freedom: its `Grown`, of the same tables, takes its
+/// place while the effect `grown_by` is on, so that simulations without the effect pay nothing for it.
 template <template <class> class Of, template <class> class Grown>
 class ModelOrGrown final : public Model {
  public:
@@ -252,7 +256,7 @@ class ModelOrGrown final : public Model {
   integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
                                  const std::vector<integrate::Seed>& seeds,
                                  const integrate::Settings& settings) const override {
-    return with.active[switching] ? grown.simulate(with, experiment, seeds, settings)
+    return with.active[switching] ? grown->simulate(with, experiment, seeds, settings)
                                   : usual.simulate(with, experiment, seeds, settings);
   }
 
@@ -264,7 +268,7 @@ class ModelOrGrown final : public Model {
     return i;
   }
   const ModelOf<Of> usual;
-  const ModelOf<Grown> grown;
+  const std::unique_ptr<Model> grown = make_model<Grown>();
   const std::size_t switching = find();
 };
 

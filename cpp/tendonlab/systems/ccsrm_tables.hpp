@@ -1,0 +1,45 @@
+#pragma once
+#include "tendonlab/systems/ccsrm_cables.hpp"
+#include "tendonlab/transmission/end_compliance.hpp"
+
+namespace tendonlab::systems {
+/// Two joints that two S-shaped cables couple to turn by equal angles over two pulleys (S4). Joint 2 is driven:
+///   J theta_1'' = r (T_21 - T_11) - friction
+/// What is the same whether the end sections stretch or not stands here.
+template <class T>
+struct CcsrmTables : CcsrmCables<T> {
+  static constexpr std::string_view name = "ccsrm",
+                                    equation =
+                                        "J theta_1'' = r (T_21 - T_11) - friction; T_i2 = T_p -+ k r (theta_2 - "
+                                        "theta_1); T_i1 = T_i2 - f_i1; T_i3 = T_i2 - f_i2";
+  using Cables = CcsrmCables<T>;
+  enum PortOf { joint, c11, c12, c21, c22, cable, e11, e12, e21, e22 };
+  static constexpr int sides = 0;
+  static constexpr bool commanded = false;
+  static constexpr std::array<Input, 1> inputs{{Cables::driver}};
+  static constexpr std::array<Output, 7> outputs{{{"joint_angle", "angle of joint 1", Dimension::displacement, 0},
+                                                  Cables::sections[0],
+                                                  Cables::sections[1],
+                                                  Cables::sections[2],
+                                                  Cables::sections[3],
+                                                  Cables::sections[4],
+                                                  Cables::sections[5]}};
+  static constexpr std::array<Place, 1> places{{{"ends", "in the cable ends"}}};
+
+  using Contact = typename Cables::Contact;
+  using Ends = Slot<T, Laws<transmission::EndCompliance>>;
+  std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, typename Cables::Middle, Ends, Ends, Ends,
+             Ends>
+      slot;
+  Chain<T, Laws<>> load, actuation;
+  std::array<Chain<T, sensing::All>, 7> sensor;
+  T inertia;
+
+  static constexpr auto parameters() {
+    return std::tuple_cat(Cables::parameters(),
+                          std::tuple{parameter(&CcsrmTables::inertia, "inertia", Dimension::inertia, Purpose::structure,
+                                               0.01, 1e-12, inf, "inertia of what joint 1 carries")});
+  }
+  T effort_per_command() const { return T(1.0); }
+};
+}  // namespace tendonlab::systems
