@@ -11,7 +11,7 @@ namespace tendonlab::integrate {
 template <class System, class T>
 class Contact {
   static constexpr int n = System::dof, directions = System::directions, num_modes = modes<System>;
-  static constexpr bool general = systems::moving<System> || systems::drives_a_port<System>();
+  static constexpr bool general = System::moving || systems::drives_a_port<System>();
   using Y = StateOf<System, T>;
   using F = Frame<System, T>;
 
@@ -25,8 +25,8 @@ class Contact {
       const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
       direction_of[i] = -1;
       if constexpr (port.direction >= 0) {
-        const bool follows = driven && port.while_driven >= 0;
-        const int m = follows ? port.while_driven : port.direction;
+        const bool follows = driven && port.direction_while_driven >= 0;
+        const int m = follows ? port.direction_while_driven : port.direction;
         direction_of[i] = m;
         if (representative[m] < 0) representative[m] = i;
         directed[m] = directed[m] || slot.directed();
@@ -251,7 +251,7 @@ class Contact {
   /// Whoever knows levers and inverse inertias at `y`: the system itself, or its answer where its geometry moves.
   template <class Inputs>
   decltype(auto) geometry(const Y& y, const F& frame, const Inputs& in) const {
-    if constexpr (systems::moving<System>)
+    if constexpr (System::moving)
       return couple(system, y.at, frame.mode, in);
     else
       return (system);

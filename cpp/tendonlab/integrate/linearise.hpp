@@ -123,7 +123,7 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
       const T& lever = under(arm);
       a.rate.acceleration[j] = a.rate.acceleration[j] - lever * b.value.force;
       for (int q = 0; q < columns; ++q) a.acceleration_by[j][q] = a.acceleration_by[j][q] - lever * b.force_by[q];
-      if constexpr (systems::moving<System>)
+      if constexpr (System::moving)
         for (std::size_t q = 0; q < columns; ++q)
           a.acceleration_by[j][q] = a.acceleration_by[j][q] - arm.d[q] * b.value.force;
       if constexpr (has > 0) a.pull[m][j] = -(lever * b.force_z);
@@ -151,7 +151,7 @@ TENDONLAB_INLINE Arrowhead<System, T> linearise(const System& system, const Stat
     const auto& mobility = geometry_of(system, c).inverse_inertia[j];
     const T& inverse = under(mobility);
     for (int q = 0; q < columns; ++q) a.acceleration_by[j][q] = a.acceleration_by[j][q] * inverse;
-    if constexpr (systems::moving<System>)
+    if constexpr (System::moving)
       for (std::size_t q = 0; q < columns; ++q)
         a.acceleration_by[j][q] = a.acceleration_by[j][q] + mobility.d[q] * a.rate.acceleration[j];
     a.rate.acceleration[j] = a.rate.acceleration[j] * inverse;

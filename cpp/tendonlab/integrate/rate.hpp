@@ -70,7 +70,7 @@ struct Frame {
 /// Who knows levers and inverse inertias: the system, or what it answered where its geometry moves.
 template <class System, class Coupled>
 TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& coupled) {
-  if constexpr (systems::moving<System>)
+  if constexpr (System::moving)
     return coupled;
   else
     return system;

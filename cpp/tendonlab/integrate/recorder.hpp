@@ -97,10 +97,7 @@ class Recorder {
   auto observe(Instant<System, T, Inputs>& instant) const {
     const auto acts = [&](auto i) { return instant.template force<i>(); };
     const auto port = [&](auto i) -> const Sliding<T>& { return instant.coupled().port[i]; };
-    if constexpr (systems::observes_ports<System, T, decltype(acts), decltype(port)>)
-      return system.observe(instant.y.at, acts, port);
-    else
-      return system.observe(instant.y.at, acts);
+    return system.observe(instant.y.at, acts, port);
   }
   /// Velocity, position, load and force of each port.
   template <class Inputs>

@@ -87,7 +87,7 @@ bool is_structural(const std::string& effect) {
 template <class System>
 std::string parameter_name(const std::string& element, std::string_view law, std::string_view own) {
   if (element.empty()) return std::string(own);
-  for (const auto& other : RenamedOf<System>::list)
+  for (const auto& other : System::renamed)
     if (other.effect == element + ":" + std::string(law) && other.own == own) return std::string(other.name);
   if (System::plain_names)
     for (const auto& nominal : System::nominal)

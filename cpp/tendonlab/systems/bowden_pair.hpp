@@ -15,22 +15,21 @@ namespace tendonlab::systems {
 /// Of a shape's curvature the torque sees two numbers up to order (mu theta)³: the wrap angle and the mean angle turned
 /// along the sheath, which `curvature_skew` states as the linear curvature that has it.
 template <class T>
-struct BowdenPair {
+struct BowdenPair : SystemDefaults {
   static constexpr std::string_view name = "bowden_pair",
                                     equation =
                                         "tau_out[k] = h (K_in tau_in - friction(v)) + (1 - h) tau_out[k-1], h = "
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
-  static constexpr bool sampled = true, commanded = false, plain_names = true;
+  static constexpr bool sampled = true, plain_names = true;
   static constexpr std::size_t carried = 4;    ///< output of the gate, torque that is held and its input, travel
   static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
-  static constexpr std::array<Port, 2> ports{{{"sheath"}, {"cable"}}};
-  static constexpr std::array<Input, 2> inputs{
-      {{"input_torque", "torque of the drive", Dimension::effort, true, Between::linear},
-       {"input_velocity", "velocity of the drive", Dimension::flow, true, Between::linear}}};
-  static constexpr std::array<Output, 1> outputs{{{"output_torque", "torque on the load", Dimension::effort, -1}}};
-  static constexpr std::array<Place, 1> places{{{"actuation", "of the drive"}}};
-  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr std::array ports{port("sheath"), port("cable")};
+  static constexpr std::array inputs{
+      input("input_torque", Dimension::effort, Between::linear, "torque of the drive").required(),
+      input("input_velocity", Dimension::flow, Between::linear, "velocity of the drive").required()};
+  static constexpr std::array outputs{output("output_torque", Dimension::effort, "torque on the load")};
+  static constexpr std::array places{Place{"actuation", "of the drive"}};
   static constexpr std::array<std::string_view, 1> nominal{"sheath:capstan"};
 
   using Laws = typename Joined<transmission::Sheath, friction::All>::type;
@@ -64,7 +63,6 @@ struct BowdenPair {
         parameter(&BowdenPair::curvature_skew, "curvature_skew", Dimension::ratio, Purpose::condition, 0.0, -3.0, 3.0,
                   "how much more a sheath is bent towards the output, 0 for a shape that is the same from both ends")};
   }
-  void prepare() {}
 
   template <class Inputs, class Memory>
   Sample<T, 1, 2> evaluate(const Inputs& in, Memory& memory) const {

@@ -11,14 +11,14 @@ namespace tendonlab::systems {
 /// rests at theta = 0, which is x_0. A nut velocity that is prescribed takes the place of the motor, which then idles,
 /// and bushings follow the sense of the joint, as the paper's simulation has it, or hold by stiction.
 template <class T>
-struct CableJoint {
+struct CableJoint : SystemDefaults {
   static constexpr std::string_view name = "cable_joint",
                                     equation =
                                         "I(theta) theta'' = r cos(theta) (F_1 - F_2) + tau_g(theta) + 2 m_2 l_1 d_21 "
                                         "sin(theta) theta'^2; J_m omega' = k i - friction - N (F_act_1 - F_act_2); "
                                         "F_i = max(0, T + K x_i + c x_i'); F_act_i = F_i + F_a_i";
-  static constexpr int dof = 2, stated = 1, directions = 4, sides = 0, driver = 1;
-  static constexpr bool commanded = true, moving = true, plain_names = false;
+  static constexpr int dof = 2, stated = 1, directions = 4, driver = 1;
+  static constexpr bool commanded = true, moving = true;
   enum PortOf {
     joint,
     motor,
@@ -33,31 +33,32 @@ struct CableJoint {
     num_ports
   };
   enum ModeOf { joint_sense, motor_sense, guide_sense, nut_sense };
-  static constexpr std::array<Port, num_ports> ports{
-      {{"joint", joint_sense},
-       {"motor", motor_sense},
-       {"winding", -1, -1, Axis::of_system, false, {}, Dimension::voltage},
-       {"gear"},
-       {"cable", -1, -1, Axis::linear, false, "cable_1"},
-       {"cable", -1, -1, Axis::linear, false, "cable_2"},
-       {"bushing_1", motor_sense, -1, Axis::linear, false, {}, Dimension::effort, guide_sense},
-       {"bushing_2", motor_sense, -1, Axis::linear, false, {}, Dimension::effort, guide_sense},
-       {"stiction", motor_sense, -1, Axis::linear, false, "stiction_1", Dimension::effort, nut_sense},
-       {"stiction", motor_sense, -1, Axis::linear, false, "stiction_2", Dimension::effort, nut_sense}}};
+  static constexpr std::array ports{
+      port("joint").turns(joint_sense),
+      port("motor").turns(motor_sense),
+      port("winding").loaded_by(Dimension::voltage),
+      port("gear"),
+      port("cable").named("cable_1").along(Axis::linear),
+      port("cable").named("cable_2").along(Axis::linear),
+      port("bushing_1").along(Axis::linear).turns(motor_sense).while_driven(guide_sense),
+      port("bushing_2").along(Axis::linear).turns(motor_sense).while_driven(guide_sense),
+      port("stiction").named("stiction_1").along(Axis::linear).turns(motor_sense).while_driven(nut_sense),
+      port("stiction").named("stiction_2").along(Axis::linear).turns(motor_sense).while_driven(nut_sense)};
   static constexpr bool joined[num_ports][2] = {{true, false}, {false, true}, {false, true}, {false, true},
                                                 {true, true},  {true, true},  {false, true}, {false, true},
                                                 {false, true}, {false, true}};
-  static constexpr std::array<Input, 2> inputs{
-      {{"voltage", "voltage at the motor", Dimension::voltage, true, Between::hold, "actuator_velocity"},
-       {"actuator_velocity", "velocity of the nut that pulls cable 1, by the drive", Dimension::speed, false,
-        Between::linear}}};
-  static constexpr std::array<Output, 5> outputs{
-      {{"joint_angle", "angle of the first link from the base", Dimension::displacement, 0},
-       {"joint_velocity", "velocity of the joint", Dimension::flow, -1},
-       {"cable_force_1", "force of cable 1 at its nut", Dimension::force, -1},
-       {"cable_force_2", "force of cable 2 at its nut", Dimension::force, -1},
-       {"motor_velocity", "velocity of the motor", Dimension::angular_speed, -1}}};
-  static constexpr std::array<Place, 2> places{{{"winding", "in the motor winding"}, {"stiction", "in the guides"}}};
+  static constexpr std::array inputs{input("voltage", Dimension::voltage, Between::hold, "voltage at the motor")
+                                         .required()
+                                         .replaced_by("actuator_velocity"),
+                                     input("actuator_velocity", Dimension::speed, Between::linear,
+                                           "velocity of the nut that pulls cable 1, by the drive")};
+  static constexpr std::array outputs{
+      output("joint_angle", Dimension::displacement, "angle of the first link from the base").position_of(0),
+      output("joint_velocity", Dimension::flow, "velocity of the joint"),
+      output("cable_force_1", Dimension::force, "force of cable 1 at its nut"),
+      output("cable_force_2", Dimension::force, "force of cable 2 at its nut"),
+      output("motor_velocity", Dimension::angular_speed, "velocity of the motor")};
+  static constexpr std::array places{Place{"winding", "in the motor winding"}, Place{"stiction", "in the guides"}};
   static constexpr std::array<std::string_view, 2> structural{"winding:winding", "cable:taut_compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:viscous", "gear:arctan", "bushing_1:bushing_branches",
                                                            "bushing_2:bushing_branches"};

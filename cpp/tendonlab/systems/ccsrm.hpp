@@ -14,16 +14,8 @@ struct Ccsrm : CcsrmTables<T> {
   using Base = CcsrmTables<T>;
   using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
   static constexpr int dof = 1, directions = 2;
-  static constexpr std::array<Port, 10> ports{{{"joint", 0},
-                                               {"contact", 0, -1, Axis::linear, false, "contact_11"},
-                                               {"contact", 1, -1, Axis::linear, true, "contact_12"},
-                                               {"contact", 0, -1, Axis::linear, false, "contact_21"},
-                                               {"contact", 1, -1, Axis::linear, true, "contact_22"},
-                                               {"cable", -1, -1, Axis::linear},
-                                               {"ends", -1, -1, Axis::linear, false, "end_11"},
-                                               {"ends", -1, -1, Axis::linear, false, "end_12"},
-                                               {"ends", -1, -1, Axis::linear, false, "end_21"},
-                                               {"ends", -1, -1, Axis::linear, false, "end_22"}}};
+  static constexpr auto ports = ccsrm_ports({contact_ports[0].turns(0), contact_ports[1].turns_as_driven(1),
+                                             contact_ports[2].turns(0), contact_ports[3].turns_as_driven(1)});
   static constexpr bool joined[10][1] = {{true}, {true}, {false}, {true}};
   std::array<T, 1> inverse_inertia;
   T lever[10][1];

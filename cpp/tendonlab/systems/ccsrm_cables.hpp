@@ -2,6 +2,12 @@
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::systems {
+/// The ports of S4: a contact at each pulley of each cable, the middle sections as one port.
+inline constexpr Port contact_port = port("contact").along(Axis::linear),
+                      cable_port = port("cable").along(Axis::linear);
+inline constexpr std::array contact_ports{contact_port.named("contact_11"), contact_port.named("contact_12"),
+                                          contact_port.named("contact_21"), contact_port.named("contact_22")};
+
 /// The cables of S4: two S-shaped ones run over two pulleys and couple joint 1 to joint 2, with friction at every
 /// contact.
 ///   T_12 = T_p - k r (theta_2 - theta_1),  T_22 = T_p + k r (theta_2 - theta_1)               middle sections
@@ -9,16 +15,15 @@ namespace tendonlab::systems {
 /// Slip v is positive towards the middle section, so f opposes it: v = r (-theta_1', theta_2', theta_1', -theta_2')
 /// while the end sections do not stretch. What all systems of these cables share stands here.
 template <class T>
-struct CcsrmCables {
-  static constexpr std::array<Output, 6> sections{
-      {{"tension_11", "tension of cable 1 beyond pulley 1", Dimension::force, -1},
-       {"tension_12", "tension of cable 1 between the pulleys", Dimension::force, -1},
-       {"tension_13", "tension of cable 1 beyond pulley 2", Dimension::force, -1},
-       {"tension_21", "tension of cable 2 beyond pulley 1", Dimension::force, -1},
-       {"tension_22", "tension of cable 2 between the pulleys", Dimension::force, -1},
-       {"tension_23", "tension of cable 2 beyond pulley 2", Dimension::force, -1}}};
-  static constexpr Input driver{"driver_angle", "angle of the driven joint 2", Dimension::angle, true, Between::smooth};
-  static constexpr std::array<std::string_view, 0> structural{};
+struct CcsrmCables : SystemDefaults {
+  static constexpr std::array sections{output("tension_11", Dimension::force, "tension of cable 1 beyond pulley 1"),
+                                       output("tension_12", Dimension::force, "tension of cable 1 between the pulleys"),
+                                       output("tension_13", Dimension::force, "tension of cable 1 beyond pulley 2"),
+                                       output("tension_21", Dimension::force, "tension of cable 2 beyond pulley 1"),
+                                       output("tension_22", Dimension::force, "tension of cable 2 between the pulleys"),
+                                       output("tension_23", Dimension::force, "tension of cable 2 beyond pulley 2")};
+  static constexpr Input driver_angle =
+      input("driver_angle", Dimension::angle, Between::smooth, "angle of the driven joint 2").required();
   static constexpr std::array<std::string_view, 4> nominal{"contact:capstan", "contact:presliding", "contact:stribeck",
                                                            "contact:viscous"};
   static constexpr bool plain_names = true;

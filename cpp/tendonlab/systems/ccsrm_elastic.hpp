@@ -10,16 +10,8 @@ struct CcsrmElastic : CcsrmTables<T> {
   using Base::joint, Base::c11, Base::c12, Base::c21, Base::c22, Base::cable, Base::e11;
   static constexpr double mass = 1e-6;  ///< kg: far below that of a strand, so that slip follows the forces at once
   static constexpr int dof = 5, stated = 1, directions = 5;
-  static constexpr std::array<Port, 10> ports{{{"joint", 0},
-                                               {"contact", 1, -1, Axis::linear, false, "contact_11"},
-                                               {"contact", 2, -1, Axis::linear, false, "contact_12"},
-                                               {"contact", 3, -1, Axis::linear, false, "contact_21"},
-                                               {"contact", 4, -1, Axis::linear, false, "contact_22"},
-                                               {"cable", -1, -1, Axis::linear},
-                                               {"ends", -1, -1, Axis::linear, false, "end_11"},
-                                               {"ends", -1, -1, Axis::linear, false, "end_12"},
-                                               {"ends", -1, -1, Axis::linear, false, "end_21"},
-                                               {"ends", -1, -1, Axis::linear, false, "end_22"}}};
+  static constexpr auto ports = ccsrm_ports(
+      {contact_ports[0].turns(1), contact_ports[1].turns(2), contact_ports[2].turns(3), contact_ports[3].turns(4)});
   static constexpr bool joined[10][5] = {
       {true}, {false, true}, {false, false, true}, {false, false, false, true}, {false, false, false, false, true}};
   std::array<T, 5> inverse_inertia;

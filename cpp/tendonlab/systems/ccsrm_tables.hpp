@@ -3,6 +3,13 @@
 #include "tendonlab/transmission/end_compliance.hpp"
 
 namespace tendonlab::systems {
+/// All ports of the mechanism, with contacts that turn as `contact` says.
+constexpr std::array<Port, 10> ccsrm_ports(const std::array<Port, 4>& contact) {
+  const Port end = port("ends").along(Axis::linear);
+  return {port("joint").turns(0), contact[0],          contact[1],          contact[2],         contact[3], cable_port,
+          end.named("end_11"),    end.named("end_12"), end.named("end_21"), end.named("end_22")};
+}
+
 /// Two joints that two S-shaped cables couple to turn by equal angles over two pulleys (S4). Joint 2 is driven:
 ///   J theta_1'' = r (T_21 - T_11) - friction
 /// What is the same whether the end sections stretch or not stands here.
@@ -14,17 +21,15 @@ struct CcsrmTables : CcsrmCables<T> {
                                         "theta_1); T_i1 = T_i2 - f_i1; T_i3 = T_i2 - f_i2";
   using Cables = CcsrmCables<T>;
   enum PortOf { joint, c11, c12, c21, c22, cable, e11, e12, e21, e22 };
-  static constexpr int sides = 0;
-  static constexpr bool commanded = false;
-  static constexpr std::array<Input, 1> inputs{{Cables::driver}};
-  static constexpr std::array<Output, 7> outputs{{{"joint_angle", "angle of joint 1", Dimension::displacement, 0},
-                                                  Cables::sections[0],
-                                                  Cables::sections[1],
-                                                  Cables::sections[2],
-                                                  Cables::sections[3],
-                                                  Cables::sections[4],
-                                                  Cables::sections[5]}};
-  static constexpr std::array<Place, 1> places{{{"ends", "in the cable ends"}}};
+  static constexpr std::array inputs{Cables::driver_angle};
+  static constexpr std::array outputs{output("joint_angle", Dimension::displacement, "angle of joint 1").position_of(0),
+                                      Cables::sections[0],
+                                      Cables::sections[1],
+                                      Cables::sections[2],
+                                      Cables::sections[3],
+                                      Cables::sections[4],
+                                      Cables::sections[5]};
+  static constexpr std::array places{Place{"ends", "in the cable ends"}};
 
   using Contact = typename Cables::Contact;
   using Ends = Slot<T, Laws<transmission::EndCompliance>>;

@@ -15,23 +15,18 @@ struct CcsrmTensions : CcsrmCables<T> {
                                         "f_i2";
   using Base = CcsrmCables<T>;
   enum PortOf { c11, c12, c21, c22, cable };
-  static constexpr int dof = 0, directions = 0, sides = 0;
-  static constexpr bool sampled = true, commanded = false;
+  static constexpr int dof = 0;
+  static constexpr bool sampled = true;
   static constexpr std::size_t carried = 2;  ///< angles of joints 1 and 2 at the sample before
-  static constexpr std::array<Port, 5> ports{{{"contact", -1, -1, Axis::linear, false, "contact_11"},
-                                              {"contact", -1, -1, Axis::linear, false, "contact_12"},
-                                              {"contact", -1, -1, Axis::linear, false, "contact_21"},
-                                              {"contact", -1, -1, Axis::linear, false, "contact_22"},
-                                              {"cable", -1, -1, Axis::linear}}};
-  static constexpr std::array<Input, 2> inputs{
-      {Base::driver, {"joint_angle", "angle of joint 1", Dimension::angle, true, Between::smooth}}};
+  static constexpr std::array ports{contact_ports[0], contact_ports[1], contact_ports[2], contact_ports[3], cable_port};
+  static constexpr std::array inputs{
+      Base::driver_angle, input("joint_angle", Dimension::angle, Between::smooth, "angle of joint 1").required()};
   static constexpr auto& outputs = Base::sections;
 
   using Contact = typename Base::Contact;
   std::tuple<Contact, Contact, Contact, Contact, typename Base::Middle> slot;
   Chain<T, Laws<>> load, actuation;
   std::array<Chain<T, sensing::All>, 6> sensor;
-  void prepare() {}
 
   template <class Inputs, class Memory>
   Sample<T, 6, 5> evaluate(const Inputs& in, Memory& memory) const {

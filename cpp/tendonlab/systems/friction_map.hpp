@@ -10,18 +10,16 @@ namespace tendonlab::systems {
 /// load (1: own weight only), so that `contact:load_dependence` is in N·m per unit of it. The default friction is the
 /// load-and-ratio model; a simulator that knows no load has `contact:static_lugre` and `contact:viscous` instead.
 template <class T>
-struct FrictionMap {
+struct FrictionMap : SystemDefaults {
   static constexpr std::string_view name = "friction_map", equation = "T = friction(speed, relative_load)";
-  static constexpr int dof = 0, directions = 0, sides = 0;
-  static constexpr bool sampled = true, commanded = false, plain_names = true;
-  static constexpr std::size_t carried = 0;
-  static constexpr std::array<Port, 1> ports{{{"contact", -1, -1, Axis::of_system, false, {}, Dimension::ratio}}};
-  static constexpr std::array<Input, 1> inputs{
-      {{"speed", "speed of the input shaft", Dimension::flow, true, Between::linear}}};
-  static constexpr std::array<Output, 1> outputs{
-      {{"friction_torque", "friction on the side of the input", Dimension::effort, -1}}};
-  static constexpr std::array<Place, 1> places{{{"contact", "at the contact"}}};
-  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr int dof = 0;
+  static constexpr bool sampled = true, plain_names = true;
+  static constexpr std::array ports{port("contact").loaded_by(Dimension::ratio)};
+  static constexpr std::array inputs{
+      input("speed", Dimension::flow, Between::linear, "speed of the input shaft").required()};
+  static constexpr std::array outputs{
+      output("friction_torque", Dimension::effort, "friction on the side of the input")};
+  static constexpr std::array places{Place{"contact", "at the contact"}};
   static constexpr std::array<std::string_view, 1> nominal{"contact:load_and_ratio"};
 
   static constexpr std::array<Renamed, 4> renamed{
@@ -41,7 +39,6 @@ struct FrictionMap {
     return std::tuple{parameter(&FrictionMap::relative_load, "relative_load", Dimension::ratio, Purpose::condition, 1.0,
                                 1e-6, inf, "what the bearings carry over what own weight makes them carry")};
   }
-  void prepare() {}
   template <class Inputs, class Memory>
   Sample<T, 1, 1> evaluate(const Inputs& in, Memory&) const {
     Sample<T, 1, 1> of;

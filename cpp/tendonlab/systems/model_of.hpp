@@ -46,16 +46,15 @@ SystemInfo describe() {
   System system{};
   SystemInfo info{};
   info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
-  info.commanded = System::commanded, info.sampled = systems::sampled<System>;
-  if constexpr (systems::sampled<System>) info.steady = integrate::memories<System> == 0 && System::carried == 0;
+  info.commanded = System::commanded, info.sampled = System::sampled;
+  if constexpr (System::sampled) info.steady = integrate::memories<System> == 0 && System::carried == 0;
   for (const auto& s : System::inputs)
-    info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.required, -1,
-                           systems::word(s.between), std::string(s.unless), s.missed});
+    info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.is_required, -1,
+                           systems::word(s.between), std::string(s.replacement), s.warns_if_absent});
   for (const auto& s : System::outputs)
     info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}, false});
   for (const auto& port : System::ports)
-    info.ports.push_back(
-        {std::string(port.name.empty() ? port.element : port.name), std::string(port.element), port.load});
+    info.ports.push_back({std::string(port.name), std::string(port.element), port.load});
   for (const auto& name : System::nominal) info.nominal.emplace_back(name);
   systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) {
     info.elements.push_back({element, systems::axis_of<System>(element), systems::place_words<System>(element)});
@@ -145,7 +144,7 @@ class ModelOf final : public Model {
   const SystemInfo& info() const override { return description; }
   RigidMotion rigid_motion(const Configuration& with) const override {
     const auto system = assemble<Of<double>, double>(with, {}, 0, 0);
-    if constexpr (systems::sampled<Of<double>>) {
+    if constexpr (Of<double>::sampled) {
       return {{}, 0.0, 1.0};
     } else {
       const auto shape = system.rigid_shape();
@@ -168,7 +167,7 @@ class ModelOf final : public Model {
     out.gradient.assign(cells * seeds.size(), 0.0);
     if (settings.ports) out.port.assign(Of<double>::ports.size() * 4 * experiment.time.size(), 0.0);
     if (seeds.empty()) run<double>(with, experiment, seeds, 0, 0, settings, out);
-    constexpr int words = systems::gradient_words<Of<double>>;
+    constexpr int words = Of<double>::gradient_words;
     for (std::size_t first = 0; first < seeds.size();) {
       const std::size_t left = seeds.size() - first;
       const bool wide = words > 1 && left > 8;
@@ -195,7 +194,7 @@ class ModelOf final : public Model {
       throw ParameterError(sentence("experiment with ", experiment.inputs.size(), " inputs and ",
                                     experiment.position.size(), " positions: ", System::name, " expects ",
                                     System::inputs.size(), " and ", stated));
-    if (!systems::sampled<System>) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), stated);
+    if (!System::sampled) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), stated);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
@@ -210,7 +209,7 @@ class ModelOf final : public Model {
     const System system = assemble<System, T>(with, seeds, first, count);
     const auto column = static_cast<int>(first), columns = static_cast<int>(count);
     const bool shows = settings.ports && first == 0;
-    if constexpr (systems::sampled<System>)
+    if constexpr (System::sampled)
       integrate::Sampling<System, T>(system, experiment, out, column, columns, shows);
     else
       integrate_steps<T>(system, experiment, seeds, first, count, settings,
@@ -272,12 +271,12 @@ class ModelOrGrown final : public Model {
   const std::size_t switching = find();
 };
 
-template <template <class> class Of, class = void>
+template <template <class> class Of, bool grows = !Of<double>::grown_by.empty()>
 struct ModelForOf {
   using type = ModelOf<Of>;
 };
 template <template <class> class Of>
-struct ModelForOf<Of, std::void_t<decltype(Of<double>::grown_by)>> {
+struct ModelForOf<Of, true> {
   using type = ModelOrGrown<Of, Of<double>::template Grown>;
 };
 template <template <class> class Of>

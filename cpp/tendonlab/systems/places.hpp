@@ -17,15 +17,6 @@ inline constexpr Place usual_places[] = {{"joint", "at the joint"},
                                          {"load", "on the load"},
                                          {"actuation", "of the actuator"}};
 
-template <class System, class = void>
-struct OwnPlacesOf {
-  static constexpr std::array<Place, 0> list{};
-};
-template <class System>
-struct OwnPlacesOf<System, std::void_t<decltype(System::places)>> {
-  static constexpr auto& list = System::places;
-};
-
 /// "bushing_1" as "bushing 1".
 inline std::string spaced(std::string name) {
   for (char& c : name)
@@ -36,7 +27,7 @@ inline std::string spaced(std::string name) {
 /// sensor".
 template <class System>
 std::string place_words(const std::string& element) {
-  for (const Place& place : OwnPlacesOf<System>::list)
+  for (const Place& place : System::places)
     if (place.element == element) return std::string(place.words);
   for (const Place& place : usual_places)
     if (place.element == element) return std::string(place.words);

@@ -4,22 +4,21 @@
 namespace tendonlab::systems {
 /// A joint (or slide) on a rigid transmission:  J q'' = K_t u - friction - g_tau sin q + known.
 template <class T>
-struct RigidJoint {
+struct RigidJoint : SystemDefaults {
   static constexpr std::string_view name = "rigid_joint",
                                     equation = "J q'' = K_t u - friction - g_tau sin(q) + known_torque";
-  static constexpr int dof = 1, directions = 1, sides = 0;
-  static constexpr std::array<Port, 1> ports{{{"joint", 0}}};
+  static constexpr int dof = 1, directions = 1;
+  static constexpr std::array ports{port("joint").turns(0)};
   static constexpr bool joined[1][1] = {{true}};
-  static constexpr std::array<Input, 2> inputs{
-      {{"motor_torque", "command to the actuator", Dimension::command, true, Between::hold},
-       {"known_torque", "effort known to act on the joint", Dimension::effort, false, Between::hold}}};
-  static constexpr std::array<Output, 2> outputs{{{"joint_angle", "position of the joint", Dimension::displacement, 0},
-                                                  {"joint_velocity", "velocity of the joint", Dimension::flow, -1}}};
-  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr std::array inputs{
+      input("motor_torque", Dimension::command, Between::hold, "command to the actuator").required(),
+      input("known_torque", Dimension::effort, Between::hold, "effort known to act on the joint")};
+  static constexpr std::array outputs{
+      output("joint_angle", Dimension::displacement, "position of the joint").position_of(0),
+      output("joint_velocity", Dimension::flow, "velocity of the joint")};
   static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
   static constexpr int gradient_words = 2;
-  static constexpr bool commanded = true;    ///< input 0 is the command of an actuator
-  static constexpr bool plain_names = true;  ///< parameters of the nominal effects carry no element in front
+  static constexpr bool commanded = true, plain_names = true;
 
   std::tuple<Slot<T, friction::All>> slot;
   Chain<T, loading::All> load;
@@ -56,8 +55,8 @@ struct RigidJoint {
     c.applied[0] = motor - gravity + known;
     return c;
   }
-  template <class S, class Force>
-  std::array<S, 2> observe(const Motion<S, 1>& at, const Force&) const {
+  template <class S, class Force, class PortAt>
+  std::array<S, 2> observe(const Motion<S, 1>& at, const Force&, const PortAt&) const {
     return {at.position[0], at.velocity[0]};
   }
 };

@@ -31,113 +31,153 @@ struct MovingCoupling : Coupling<S, ports, n> {
   std::array<S, n> inverse_inertia{};
 };
 enum class Axis { of_system, rotary, linear };
-/// Where a slot sits: its element, whether its force depends on the direction of its sliding (and which mode that is),
-/// whether it has a gap (and which mode is its side); a mode -1 is none. `axis`: what it slides along. `driven`: its
-/// velocity is prescribed by inputs, so it never sticks: its direction is that of the last motion. Ports of one element
-/// carry the same laws with the same parameters; each then has a `name` of its own. `load`: what that is which the slot
-/// sees as its load. `while_driven`: where it is driven only in experiments that give the system's input `driver`, the
-/// mode of its direction in these.
+/// Where a slot sits. Written with words: `port("bushing_1").along(Axis::linear).turns(motor_sense)`. -1 is no mode.
 struct Port {
-  std::string_view element;
-  int direction = -1, side = -1;
-  Axis axis = Axis::of_system;
-  bool driven = false;
-  std::string_view name = {};
-  Dimension load = Dimension::effort;
-  int while_driven = -1;
+  std::string_view element;  ///< ports of one element carry the same laws with the same parameters
+  std::string_view name;
+  Axis axis = Axis::of_system;         ///< what it slides along
+  Dimension load = Dimension::effort;  ///< of the load that the slot sees
+  int direction = -1, side = -1;       ///< modes: direction of sliding, flank of a gap
+  int direction_while_driven = -1;     ///< mode of the direction in experiments that give the system's input `driver`
+  bool driven = false;                 ///< inputs prescribe its velocity: it never sticks
+
+  /// A name of its own, where several ports share an element.
+  constexpr Port named(std::string_view own) const {
+    Port p = *this;
+    p.name = own;
+    return p;
+  }
+  constexpr Port along(Axis what) const {
+    Port p = *this;
+    p.axis = what;
+    return p;
+  }
+  constexpr Port loaded_by(Dimension what) const {
+    Port p = *this;
+    p.load = what;
+    return p;
+  }
+  /// Its force depends on the direction of sliding, which is this mode.
+  constexpr Port turns(int mode) const {
+    Port p = *this;
+    p.direction = mode;
+    return p;
+  }
+  /// Its direction is that of the last motion that inputs prescribed.
+  constexpr Port turns_as_driven(int mode) const {
+    Port p = turns(mode);
+    p.driven = true;
+    return p;
+  }
+  /// Driven only in experiments that give the system's input `driver`; its direction is then this mode.
+  constexpr Port while_driven(int mode) const {
+    Port p = *this;
+    p.direction_while_driven = mode;
+    return p;
+  }
+  /// It has a gap, whose flank is this mode.
+  constexpr Port with_gap(int mode) const {
+    Port p = *this;
+    p.side = mode;
+    return p;
+  }
 };
+constexpr Port port(std::string_view element) {
+  return {element, element};
+}
+
 /// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated.
 enum class Between { hold, linear, smooth };
-/// `unless`: an input that takes the place of this one where it was logged. `missed`: optional since a rig may lack the
-/// part that it drives; where it was not logged although a measured output depends on it, users are told that it is 0.
 struct Input {
   std::string_view name, meaning;
   Dimension dimension;
-  bool required;
   Between between;
-  std::string_view unless = {};
-  bool missed = false;
+  bool is_required = false;
+  std::string_view replacement = {};  ///< an input that takes the place of this one where it was logged
+  bool warns_if_absent = false;
+
+  constexpr Input required() const {
+    Input i = *this;
+    i.is_required = true;
+    return i;
+  }
+  constexpr Input replaced_by(std::string_view other) const {
+    Input i = *this;
+    i.replacement = other;
+    return i;
+  }
+  /// Where it was not logged although a measured output depends on it, users are warned that it is taken as 0.
+  constexpr Input warn_if_absent() const {
+    Input i = *this;
+    i.warns_if_absent = true;
+    return i;
+  }
 };
+constexpr Input input(std::string_view name, Dimension dimension, Between between, std::string_view meaning) {
+  return {name, meaning, dimension, between};
+}
+struct Output {
+  std::string_view name, meaning;
+  Dimension dimension;
+  int axis = -1;  ///< the degree of freedom whose position it is, -1 for anything else
+
+  constexpr Output position_of(int degree_of_freedom) const {
+    Output o = *this;
+    o.axis = degree_of_freedom;
+    return o;
+  }
+};
+constexpr Output output(std::string_view name, Dimension dimension, std::string_view meaning) {
+  return {name, meaning, dimension};
+}
 /// The public name of a parameter where it is not made by the rule: {effect, own name, public name}.
 struct Renamed {
   std::string_view effect, own, name;
 };
 
-// What a system need not state.
-template <class System, class = void>
-struct MovingOf : std::false_type {};
-template <class System>
-struct MovingOf<System, std::enable_if_t<System::moving>> : std::true_type {};
-/// Does its geometry move?
-template <class System>
-inline constexpr bool moving = MovingOf<System>::value;
-
-template <class System, class = void>
-struct SampledOf : std::false_type {};
-template <class System>
-struct SampledOf<System, std::enable_if_t<System::sampled>> : std::true_type {};
-/// Does it answer sample by sample, without a differential equation?
-template <class System>
-inline constexpr bool sampled = SampledOf<System>::value;
-
-template <class System, class = void>
-struct RenamedOf {
-  static constexpr std::array<Renamed, 0> list{};
+/// What a system states. It inherits these defaults, overrides what differs, and must state
+///   name, equation, dof, ports, inputs, outputs;
+///   parameters(): the table of its own parameters; prepare(): what follows from them, once;
+///   slot: a tuple with a Slot for each port; load, actuation: a Chain; sensor: a Chain for each output.
+/// A system with a differential equation also states
+///   joined[port][dof]: false where the lever is always 0; rigid_shape(): how far each degree of freedom moves with the
+///   first if nothing stretches; lever and inverse_inertia: set by prepare() or, if `moving`, returned by couple;
+///   couple(motion, modes, inputs): what the ports see, and what else acts; observe(motion, force, port): the outputs.
+/// A sampled system states `evaluate` instead (systems/sampled.hpp).
+struct SystemDefaults {
+  static constexpr int directions = 0, sides = 0;  ///< number of modes: directions of sliding, flanks of gaps
+  /// Degrees of freedom whose initial state an experiment states, -1 for all. Those after them have next to no inertia:
+  /// begin(motion, inputs) places them, and their velocities, which follow the forces at once, are not judged.
+  static constexpr int stated = -1;
+  static constexpr int driver = -1;                 ///< the input that, where given, drives ports `while_driven`
+  static constexpr bool moving = false;             ///< levers and inverse inertias change with the motion
+  static constexpr bool sampled = false;            ///< answers sample by sample, without a differential equation
+  static constexpr std::size_t carried = 0;         ///< numbers that a sampled system remembers besides its slots
+  static constexpr bool commanded = false;          ///< input 0 is the command of an actuator: state effort_per_command
+  static constexpr bool plain_names = false;        ///< parameters of nominal effects carry no element in front
+  static constexpr int gradient_words = 1;          ///< eights of derivatives in one simulation
+  static constexpr std::string_view grown_by = {};  ///< the effect that replaces the system by its `Grown`
+  static constexpr std::array<std::string_view, 0> structural{}, nominal{};  ///< effects always there, and by default
+  static constexpr std::array<Renamed, 0> renamed{};
+  static constexpr std::array<Place, 0> places{};  ///< words for its own elements
+  void prepare() {}
 };
-template <class System>
-struct RenamedOf<System, std::void_t<decltype(System::renamed)>> {
-  static constexpr auto& list = System::renamed;
-};
-/// Do its outputs show what its ports see, beside what they do? Then `observe` also takes a function of a port.
-template <class System, class T, class Force, class Port, class = void>
-inline constexpr bool observes_ports = false;
-template <class System, class T, class Force, class Port>
-inline constexpr bool
-    observes_ports<System, T, Force, Port,
-                   std::void_t<decltype(std::declval<const System&>().observe(
-                       std::declval<const Motion<T, System::dof>&>(), std::declval<Force>(), std::declval<Port>()))>> =
-        true;
 
-template <class System, class = void>
-struct StatedOf : std::integral_constant<int, System::dof> {};
 template <class System>
-struct StatedOf<System, std::enable_if_t<(System::stated > 0)>> : std::integral_constant<int, System::stated> {};
-/// The degrees of freedom whose initial state an experiment states. Those after them have next to no inertia: `begin`
-/// of the system places them, and their velocities, which follow the forces at once, are not judged step by step.
-template <class System>
-inline constexpr int stated = StatedOf<System>::value;
-
-template <class System, class = void>
-struct GradientWordsOf : std::integral_constant<int, 1> {};
-template <class System>
-struct GradientWordsOf<System, std::enable_if_t<(System::gradient_words > 0)>>
-    : std::integral_constant<int, System::gradient_words> {};
-/// How many eights of derivatives one simulation carries: more cost time to compile, fewer to run.
-template <class System>
-inline constexpr int gradient_words = GradientWordsOf<System>::value;
+inline constexpr int stated = System::stated < 0 ? System::dof : System::stated;
 
 template <class System>
 constexpr bool drives_a_port() {
-  for (const auto& port : System::ports)
-    if (port.driven || port.while_driven >= 0) return true;
+  for (const Port& port : System::ports)
+    if (port.driven || port.direction_while_driven >= 0) return true;
   return false;
 }
-template <class System, class = void>
-struct DriverOf : std::integral_constant<int, -1> {};
-template <class System>
-struct DriverOf<System, std::enable_if_t<(System::driver >= 0)>> : std::integral_constant<int, System::driver> {};
 /// Is the input given that drives ports which without it move freely?
 template <class System, class Inputs>
 bool is_driven(const Inputs& in) {
-  if constexpr (DriverOf<System>::value >= 0)
-    return in.template given<DriverOf<System>::value>();
+  if constexpr (System::driver >= 0)
+    return in.template given<System::driver>();
   else
     return static_cast<void>(in), false;
 }
-/// An output; `axis` is the degree of freedom whose angle it is, -1 for anything else.
-struct Output {
-  std::string_view name, meaning;
-  Dimension dimension;
-  int axis;
-};
 }  // namespace tendonlab::systems

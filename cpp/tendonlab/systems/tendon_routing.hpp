@@ -1,6 +1,6 @@
 #pragma once
 #include "tendonlab/systems/sampled.hpp"
-#include "tendonlab/systems/tendon_table.hpp"
+#include "tendonlab/systems/tendon_signals.hpp"
 #include "tendonlab/transmission/routing.hpp"
 
 namespace tendonlab::systems {
@@ -12,45 +12,19 @@ namespace tendonlab::systems {
 /// viscous and tension-proportional ones as the parameters say, and what `cable` adds on every branch. Reducers sit on
 /// the driven pulleys; at rest they drive. Fewer joints: unit radii, no losses and no load for the others.
 template <class T>
-struct TendonRouting : tendon::Entries<T> {
+struct TendonRouting : SystemDefaults, tendon::Entries<T> {
   static constexpr std::string_view name = "tendon_routing",
                                     equation =
                                         "R_m q_m' = R q'; tension before a branch = tension behind it + loss; "
                                         "C_m = R_m tension at the motor";
-  static constexpr int dof = 0, directions = 0, sides = 0;
-  static constexpr bool sampled = true, commanded = false, plain_names = false;
+  static constexpr int dof = 0;
+  static constexpr bool sampled = true;
   static constexpr std::size_t n = tendon::joints, branches = tendon::branches;
   static constexpr std::size_t carried = branches;  ///< travel of each branch
-  static constexpr std::array<Port, branches + n> ports{{{"cable", -1, -1, Axis::linear, false, "cable_1_0"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_2_0"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_2_1"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_3_0"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_3_1"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_3_2"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_4_0"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_4_1"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_4_2"},
-                                                         {"cable", -1, -1, Axis::linear, false, "cable_4_3"},
-                                                         {"gear", -1, -1, Axis::rotary, false, "gear_1"},
-                                                         {"gear", -1, -1, Axis::rotary, false, "gear_2"},
-                                                         {"gear", -1, -1, Axis::rotary, false, "gear_3"},
-                                                         {"gear", -1, -1, Axis::rotary, false, "gear_4"}}};
-  // The first joint moves on every device; what another one lacks is 0, which is a surprise where its torque shows.
-  static constexpr std::array<Input, 2 * n> inputs{
-      {{"motor_velocity_1", "velocity of motor 1", Dimension::angular_speed, true, Between::linear},
-       {"motor_velocity_2", "velocity of motor 2", Dimension::angular_speed, false, Between::linear, {}, true},
-       {"motor_velocity_3", "velocity of motor 3", Dimension::angular_speed, false, Between::linear, {}, true},
-       {"motor_velocity_4", "velocity of motor 4", Dimension::angular_speed, false, Between::linear, {}, true},
-       {"external_torque_1", "torque that joint 1 needs", Dimension::torque, false, Between::linear, {}, true},
-       {"external_torque_2", "torque that joint 2 needs", Dimension::torque, false, Between::linear, {}, true},
-       {"external_torque_3", "torque that joint 3 needs", Dimension::torque, false, Between::linear, {}, true},
-       {"external_torque_4", "torque that joint 4 needs", Dimension::torque, false, Between::linear, {}, true}}};
-  static constexpr std::array<Output, n> outputs{{{"motor_torque_1", "torque of motor 1", Dimension::torque, -1},
-                                                  {"motor_torque_2", "torque of motor 2", Dimension::torque, -1},
-                                                  {"motor_torque_3", "torque of motor 3", Dimension::torque, -1},
-                                                  {"motor_torque_4", "torque of motor 4", Dimension::torque, -1}}};
-  static constexpr std::array<Place, 1> places{{{"load", "of the load"}}};
-  static constexpr std::array<std::string_view, 0> structural{};
+  static constexpr auto ports = tendon::ports();
+  static constexpr auto inputs = tendon::inputs();
+  static constexpr auto outputs = tendon::outputs();
+  static constexpr std::array places{Place{"load", "of the load"}};
   /// Losses of the parameters are no effects. Effects that refine dry friction ask for `cable:coulomb`, perhaps of 0.
   static constexpr std::array<std::string_view, 0> nominal{};
 

@@ -6,28 +6,29 @@ namespace tendonlab::systems {
 ///   J_m q_m'' = u - friction_m - f/N,   J_l q_l'' = f - friction_l - g_tau sin q_l + known,
 ///   f = k (q_m/N - q_l) + c (q_m'/N - q_l').
 template <class T>
-struct TwoInertia {
+struct TwoInertia : SystemDefaults {
   static constexpr std::string_view name = "two_inertia",
                                     equation =
                                         "J_m q_m'' = u - friction_m - f/N; J_l q_l'' = f - friction_l - g_tau "
                                         "sin(q_l) + known_torque; f = k (q_m/N - q_l) + c (q_m'/N - q_l')";
   static constexpr int dof = 2, directions = 2, sides = 1;
   enum PortOf { motor, joint, contact, cable };
-  static constexpr std::array<Port, 4> ports{{{"motor", 0}, {"joint", 1}, {"contact", 1}, {"cable", -1, 2}}};
+  enum ModeOf { motor_sense, joint_sense, flank };
+  static constexpr std::array ports{port("motor").turns(motor_sense), port("joint").turns(joint_sense),
+                                    port("contact").turns(joint_sense), port("cable").with_gap(flank)};
   static constexpr bool joined[4][2] = {{true, false}, {false, true}, {false, true}, {true, true}};
-  static constexpr std::array<Input, 2> inputs{
-      {{"motor_torque", "torque of the motor", Dimension::command, true, Between::hold},
-       {"known_torque", "effort known to act on the joint", Dimension::effort, false, Between::hold}}};
-  static constexpr std::array<Output, 3> outputs{
-      {{"motor_angle", "angle of the motor", Dimension::displacement, 0},
-       {"joint_angle", "angle of the joint", Dimension::displacement, 1},
-       {"cable_torque", "torque of the cable on the joint", Dimension::effort, -1}}};
+  static constexpr std::array inputs{
+      input("motor_torque", Dimension::command, Between::hold, "torque of the motor").required(),
+      input("known_torque", Dimension::effort, Between::hold, "effort known to act on the joint")};
+  static constexpr std::array outputs{
+      output("motor_angle", Dimension::displacement, "angle of the motor").position_of(0),
+      output("joint_angle", Dimension::displacement, "angle of the joint").position_of(1),
+      output("cable_torque", Dimension::effort, "torque of the cable on the joint")};
   static constexpr std::array<std::string_view, 1> structural{"cable:compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:coulomb", "motor:viscous", "joint:coulomb",
                                                            "joint:viscous"};
   static constexpr int gradient_words = 2;
-  static constexpr bool commanded = true;  ///< input 0 is the command of an actuator
-  static constexpr bool plain_names = false;
+  static constexpr bool commanded = true;
 
   using Friction = Slot<T, friction::All>;
   std::tuple<Friction, Friction, Slot<T, Seeing<sees_load, friction::All>>, Slot<T, transmission::All>> slot;
@@ -65,16 +66,16 @@ struct TwoInertia {
     auto& pull = c.port[cable];
     pull.position = lever[cable][0] * at.position[0] - at.position[1];
     pull.velocity = lever[cable][0] * at.velocity[0] - at.velocity[1];
-    pull.side = mode[2];
+    pull.side = mode[flank];
     const S tension = std::get<cable>(slot).respond(pull, S{}).force;  // a function of position and velocity only
-    c.port[motor] = {at.velocity[0], at.position[0], torque, mode[0], {}};
-    c.port[joint] = {at.velocity[1], at.position[1], 0.5 * (tension + gravity - known), mode[1], {}};
-    c.port[contact] = {at.velocity[1], at.position[1], tension, mode[1], {}};
+    c.port[motor] = {at.velocity[0], at.position[0], torque, mode[motor_sense], {}};
+    c.port[joint] = {at.velocity[1], at.position[1], 0.5 * (tension + gravity - known), mode[joint_sense], {}};
+    c.port[contact] = {at.velocity[1], at.position[1], tension, mode[joint_sense], {}};
     c.applied = {torque, known - gravity};
     return c;
   }
-  template <class S, class Force>
-  std::array<S, 3> observe(const Motion<S, 2>& at, const Force& force) const {
+  template <class S, class Force, class PortAt>
+  std::array<S, 3> observe(const Motion<S, 2>& at, const Force& force, const PortAt&) const {
     return {at.position[0], at.position[1], force(std::integral_constant<int, cable>{})};
   }
 };
