@@ -1,7 +1,8 @@
 #pragma once
-// One order for everything a system is made of: its own parameters, its slots, its load, its actuation, its sensors.
-// Whoever describes, fills or seeds a system walks through it here.
+// One order for everything that a system consists of: its own parameters, its slots, its load, its actuation, its
+// sensors. To describe, fill or seed a system is to walk through it here.
 #include <string>
+#include <vector>
 
 #include "tendonlab/systems/system.hpp"
 
@@ -19,31 +20,33 @@ void share_slots(System& system, std::index_sequence<i...>) {
   ((std::get<i>(system.slot) = std::get<first_port<System>(i)>(system.slot)), ...);
 }
 
-/// Calls f(element, laws, active) for each place where laws sit.
+/// Names of the places where laws sit, in the order of the walk.
+template <class System>
+std::vector<std::string> place_names() {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < System::ports.size(); ++i)
+    if (first_port<System>(i) == i) names.emplace_back(System::ports[i].element);
+  if constexpr (decltype(System::load)::size > 0) names.emplace_back("load");
+  if constexpr (decltype(System::actuation)::size > 0) names.emplace_back("actuation");
+  if constexpr (decltype(System::sensor)::value_type::size > 0)
+    for (const auto& output : System::outputs) names.push_back("sensor." + std::string(output.name));
+  return names;
+}
+/// Calls f(laws, active) for each place where laws sit.
 template <class System, class F>
 void for_each_place(System& system, F&& f) {
+  const auto place = [&](auto& of) {
+    if constexpr (std::decay_t<decltype(of)>::size > 0) f(of.laws, of.active);
+  };
   std::size_t i = 0;
   const auto slot = [&](auto& of) {
-    if (first_port<System>(i) == i) f(std::string(System::ports[i].element), of.laws, of.active);
+    if (first_port<System>(i) == i) f(of.laws, of.active);
     ++i;
   };
   std::apply([&](auto&... each) { (slot(each), ...); }, system.slot);
-  const auto chain = [&](const std::string& element, auto& of) {
-    if constexpr (std::decay_t<decltype(of)>::size > 0) f(element, of.laws, of.active);
-  };
-  chain("load", system.load);
-  chain("actuation", system.actuation);
-  for (std::size_t c = 0; c < System::outputs.size(); ++c)
-    chain("sensor." + std::string(System::outputs[c].name), system.sensor[c]);
-}
-
-/// Calls f(element, law, is_active bit) for each law in each place.
-template <class System, class F>
-void for_each_law(System& system, F&& f) {
-  for_each_place(system, [&](const std::string& element, auto& laws, unsigned& active) {
-    unsigned bit = 1;
-    std::apply([&](auto&... law) { ((f(element, law, active, bit), bit <<= 1), ...); }, laws);
-  });
+  place(system.load);
+  place(system.actuation);
+  for (auto& sensor : system.sensor) place(sensor);
 }
 
 template <class Law, class = void>
@@ -64,15 +67,14 @@ struct Holder {
   }
 };
 
-/// Calls f(holder, table entry, field) for each parameter; the system's own have neither element nor law.
+/// Calls f(field) for each parameter: the system's own, then those of the laws in each place.
 template <class System, class F>
-void for_each_parameter_of(System& system, F&& f) {
-  for_each_parameter<System>([&](const auto& p) { f(Holder{}, p, system.*p.field); });
-  for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
-    using Law = std::decay_t<decltype(law)>;
-    const Holder holder{element, Law::name, PartnerOf<Law>::name};
-    for_each_parameter<Law>([&](const auto& p) { f(holder, p, law.*p.field); });
-  });
+void for_each_field(System& system, F&& f) {
+  for_each_parameter<System>([&](const auto& p) { f(system.*p.field); });
+  const auto fields = [&](auto& law) {
+    for_each_parameter<std::decay_t<decltype(law)>>([&](const auto& p) { f(law.*p.field); });
+  };
+  for_each_place(system, [&](auto& laws, unsigned&) { std::apply([&](auto&... law) { (fields(law), ...); }, laws); });
 }
 
 template <class System>

@@ -40,33 +40,58 @@ inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& par
 }
 }  // namespace systems
 
-template <template <class> class Of>
-SystemInfo describe() {
-  using System = Of<double>;
-  System system{};
+/// What a system states of itself, and which public parameter each field is, in the order of the walk.
+struct Description {
   SystemInfo info{};
-  info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
-  info.commanded = System::commanded, info.sampled = System::sampled;
-  if constexpr (System::sampled) info.steady = integrate::memories<System> == 0 && System::carried == 0;
-  for (const auto& s : System::inputs)
-    info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.is_required, -1,
-                           systems::word(s.between), std::string(s.replacement), s.warns_if_absent});
-  for (const auto& s : System::outputs)
-    info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}, false});
-  for (const auto& port : System::ports)
-    info.ports.push_back({std::string(port.name), std::string(port.element), port.load});
-  for (const auto& name : System::nominal) info.nominal.emplace_back(name);
-  systems::for_each_place(system, [&](const std::string& element, auto&, unsigned) {
-    info.elements.push_back({element, systems::axis_of<System>(element), systems::place_words<System>(element)});
-  });
-  systems::for_each_parameter_of(system, [&](const systems::Holder& of, const auto& p, auto&) {
-    if (!systems::place_of(info.parameters, of, p.name))
-      info.parameters.push_back(systems::under_load<System>(
-          {systems::parameter_name<System>(of.element, of.law, p.name), of.element, std::string(of.law),
-           std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper, std::string(p.meaning)}));
-  });
-  systems::for_each_law(system, [&](const std::string& element, auto& law, unsigned, unsigned) {
-    using Law = std::decay_t<decltype(law)>;
+  std::vector<std::size_t> parameter_of_field;
+};
+
+/// Describes a system: its own facts, then place by place those of its laws.
+template <class System>
+class Describe {
+ public:
+  static Description all() {
+    Describe one;
+    one.signals();
+    for_each_parameter<System>([&](const auto& p) { one.add({}, p); });
+    const auto names = systems::place_names<System>();
+    auto name = names.begin();
+    System system{};
+    systems::for_each_place(system, [&](auto& laws, unsigned) {
+      const std::string& element = *name++;
+      one.info.elements.push_back({element, systems::axis_of<System>(element), systems::place_words<System>(element)});
+      std::apply([&](auto&... law) { (one.add_law(element, law), ...); }, laws);
+    });
+    return one.made;
+  }
+
+ private:
+  void signals() {
+    info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
+    info.commanded = System::commanded, info.sampled = System::sampled;
+    if constexpr (System::sampled) info.steady = integrate::memories<System> == 0 && System::carried == 0;
+    for (const auto& s : System::inputs)
+      info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.is_required, -1,
+                             systems::word(s.between), std::string(s.replacement), s.warns_if_absent});
+    for (const auto& s : System::outputs)
+      info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}, false});
+    for (const auto& port : System::ports)
+      info.ports.push_back({std::string(port.name), std::string(port.element), port.load});
+    for (const auto& name : System::nominal) info.nominal.emplace_back(name);
+  }
+  /// A parameter of a law, or of the system itself; a law's partner may have stated it before.
+  template <class Row>
+  void add(const systems::Holder& of, const Row& p) {
+    const auto known = systems::place_of(info.parameters, of, p.name);
+    made.parameter_of_field.push_back(known.value_or(info.parameters.size()));
+    if (known) return;
+    info.parameters.push_back(systems::under_load<System>(
+        {systems::parameter_name<System>(of.element, of.law, p.name), of.element, std::string(of.law),
+         std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper, std::string(p.meaning)}));
+  }
+  template <class Law>
+  void add_law(const std::string& element, const Law&) {
+    const systems::Holder holder{element, Law::name, systems::PartnerOf<Law>::name};
     const std::string name = element + ":" + std::string(Law::name);
     EffectInfo effect{name,
                       element,
@@ -80,45 +105,30 @@ SystemInfo describe() {
                       {},
                       Law::roles,
                       systems::is_structural<System>(name)};
-    const systems::Holder holder{element, Law::name, systems::PartnerOf<Law>::name};
     for_each_parameter<Law>([&](const auto& p) {
-      const auto& owner = info.parameters[*systems::place_of(info.parameters, holder, p.name)];
+      add(holder, p);
+      const auto& owner = info.parameters[made.parameter_of_field.back()];
       const std::string holding = owner.element + ":" + owner.effect;
       if (owner.effect == Law::name)
         effect.parameters.push_back(owner.name);
-      else if (!systems::is_structural<System>(holding))  // what is always there
+      else if (!systems::is_structural<System>(holding))  // structural effects are always there
         effect.needs.push_back(holding);
     });
-    info.effects.push_back(effect);
-  });
-  return info;
-}
+    info.effects.push_back(std::move(effect));
+  }
 
-/// Which public parameter each parameter of each law is, in the order of the walk.
-template <class System>
-std::vector<std::size_t> find_places() {
-  System system{};
-  std::vector<std::pair<systems::Holder, std::string_view>> known;
-  std::vector<std::size_t> places;
-  systems::for_each_parameter_of(system, [&](const systems::Holder& of, const auto& p, auto&) {
-    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& one) {
-      return one.second == p.name && of.holds(one.first.element, one.first.law);
-    });
-    places.push_back(static_cast<std::size_t>(found - known.begin()));
-    if (found == known.end()) known.emplace_back(of, p.name);
-  });
-  return places;
-}
+  Description made;
+  SystemInfo& info = made.info;
+};
 
-/// The system with numbers in it; `columns` are seeded into the derivatives of `T`.
+/// The system with numbers in it; `count` seeds from `first` on are seeded into the derivatives of `T`.
 template <class System, class T>
-System assemble(const Configuration& with, const std::vector<integrate::Seed>& seeds, std::size_t first,
-                std::size_t count) {
-  static const auto places = find_places<System>();
+System assemble(const Description& described, const Configuration& with, const std::vector<integrate::Seed>& seeds,
+                std::size_t first, std::size_t count) {
   System system{};
-  auto place = places.begin();
-  systems::for_each_parameter_of(system, [&](const systems::Holder&, const auto&, auto& field) {
-    const std::size_t index = *place++;
+  auto next = described.parameter_of_field.begin();
+  systems::for_each_field(system, [&](auto& field) {
+    const std::size_t index = *next++;
     T value(with.values[index]);
     if constexpr (!std::is_same_v<T, double>)
       for (std::size_t k = 0; k < count; ++k)
@@ -128,8 +138,9 @@ System assemble(const Configuration& with, const std::vector<integrate::Seed>& s
     field = value;
   });
   std::size_t effect = 0;
-  systems::for_each_law(system, [&](const std::string&, auto&, unsigned& active, unsigned bit) {
-    if (with.active[effect++]) active |= bit;
+  systems::for_each_place(system, [&](auto& laws, unsigned& active) {
+    for (unsigned law = 0; law < std::tuple_size_v<std::decay_t<decltype(laws)>>; ++law)
+      if (with.active[effect++]) active |= 1u << law;
   });
   systems::share_slots(system, std::make_index_sequence<System::ports.size()>{});
   system.prepare();
@@ -141,9 +152,9 @@ class ModelOf final : public Model {
   using Seeds = std::vector<integrate::Seed>;
 
  public:
-  const SystemInfo& info() const override { return description; }
+  const SystemInfo& info() const override { return description.info; }
   RigidMotion rigid_motion(const Configuration& with) const override {
-    const auto system = assemble<Of<double>, double>(with, {}, 0, 0);
+    const auto system = assemble<Of<double>, double>(description, with, {}, 0, 0);
     if constexpr (Of<double>::sampled) {
       return {{}, 0.0, 1.0};
     } else {
@@ -199,14 +210,13 @@ class ModelOf final : public Model {
     for (const auto& seed : seeds)
       index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
             static_cast<std::size_t>(seed.index),
-            seed.of == integrate::Seed::Of::parameter ? description.parameters.size() : stated);
+            seed.of == integrate::Seed::Of::parameter ? description.info.parameters.size() : stated);
   }
   template <class T>
-  static void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds,
-                  std::size_t first, std::size_t count, const integrate::Settings& settings,
-                  integrate::Trajectory& out) {
+  void run(const Configuration& with, const integrate::Experiment& experiment, const Seeds& seeds, std::size_t first,
+           std::size_t count, const integrate::Settings& settings, integrate::Trajectory& out) const {
     using System = Of<T>;
-    const System system = assemble<System, T>(with, seeds, first, count);
+    const System system = assemble<System, T>(description, with, seeds, first, count);
     const auto column = static_cast<int>(first), columns = static_cast<int>(count);
     const bool shows = settings.ports && first == 0;
     if constexpr (System::sampled)
@@ -238,7 +248,7 @@ class ModelOf final : public Model {
     simulation.run(out, record);
   }
 
-  const SystemInfo description = describe<Of>();
+  const Description description = Describe<Of<double>>::all();
 };
 
 /// The model of a system. Each is compiled once, in a file of its own; whoever lists or joins systems asks for it here.
