@@ -111,6 +111,11 @@ def findings() -> tuple[EffectFinding, ...]:
     )
 
 
+def probabilities(*values: float) -> dict[str, float]:
+    verdicts = ("data_fault", "no_gap", "parameters_only", "effect", "unknown_effect")
+    return dict(zip(verdicts, values, strict=True))
+
+
 def effect() -> Diagnosis:
     return Diagnosis(
         dataset="rig-42",
@@ -118,7 +123,13 @@ def effect() -> Diagnosis:
         seed=0,
         seconds=12.34,
         verdict="effect",
-        verdict_probability={"no_gap": 0.0, "parameters_only": 0.01, "effect": 0.95, "unknown_effect": 0.04},
+        verdict_probability={
+            "data_fault": 0.0,
+            "no_gap": 0.0,
+            "parameters_only": 0.01,
+            "effect": 0.95,
+            "unknown_effect": 0.04,
+        },
         replay={"kind": "injection", "kp": 0.8, "kd": 0.01},
         gap={
             "motor_angle": {"noise_floor": 4e-4, "nominal": 0.021, "refitted": 0.0092, "with_effect": 4.9e-4},
@@ -173,7 +184,13 @@ def no_gap() -> Diagnosis:
         selected=(),
         explained=None,
         shrinkage=nothing,
-        verdict_probability={"no_gap": 0.97, "parameters_only": 0.02, "effect": 0.005, "unknown_effect": 0.005},
+        verdict_probability={
+            "data_fault": 0.0,
+            "no_gap": 0.97,
+            "parameters_only": 0.02,
+            "effect": 0.005,
+            "unknown_effect": 0.005,
+        },
         gap={"joint_angle": {"noise_floor": 1e-3, "nominal": 1.02e-3, "refitted": 1.01e-3, "with_effect": 1.01e-3}},
         where={"signals": [], "elements": [], "regimes": []},
         where_map=(),
@@ -200,7 +217,13 @@ def parameters_only() -> Diagnosis:
         explained=0.0,
         shrinkage=shrinkage,
         indistinguishable=(),
-        verdict_probability={"no_gap": 0.0, "parameters_only": 0.9, "effect": 0.06, "unknown_effect": 0.04},
+        verdict_probability={
+            "data_fault": 0.0,
+            "no_gap": 0.0,
+            "parameters_only": 0.9,
+            "effect": 0.06,
+            "unknown_effect": 0.04,
+        },
         overlay=overlay({"joint_angle": 1e-3}),
     )
 
@@ -211,7 +234,13 @@ def unknown_effect() -> Diagnosis:
         verdict="unknown_effect",
         selected=("joint:presliding", "joint:load_dependence"),
         explained=0.71,
-        verdict_probability={"no_gap": 0.0, "parameters_only": 0.0, "effect": 0.12, "unknown_effect": 0.88},
+        verdict_probability={
+            "data_fault": 0.0,
+            "no_gap": 0.0,
+            "parameters_only": 0.0,
+            "effect": 0.12,
+            "unknown_effect": 0.88,
+        },
         shrinkage={
             "from_nominal": {"value": 0.6, "ci95": [-0.05, 0.7]},
             "from_refitted": {"value": 0.46, "ci95": [0.4, 0.5]},
@@ -219,7 +248,25 @@ def unknown_effect() -> Diagnosis:
     )
 
 
-MADE_UP = {made.__name__: made for made in (effect, no_gap, parameters_only, unknown_effect)}
+def data_fault() -> Diagnosis:
+    sign = {
+        "problem": "sign",
+        "signal": "motor_torque",
+        "experiment": None,
+        "detail": "all inertial and gravity torques come out negative: −1.03 of what is stated",
+        "blocks": True,
+    }
+    return replace(
+        no_gap(),
+        verdict="data_fault",
+        data=(sign,),
+        verdict_probability=probabilities(1.0, 0.0, 0.0, 0.0, 0.0),
+        warnings=("check the wiring",),
+        calibrated=False,
+    )
+
+
+MADE_UP = {made.__name__: made for made in (effect, no_gap, parameters_only, unknown_effect, data_fault)}
 
 
 @pytest.fixture(params=list(MADE_UP))

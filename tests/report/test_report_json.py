@@ -13,34 +13,19 @@ from tendonlab.errors import ParameterError
 from tendonlab.report.diagnosis import Diagnosis, EffectFinding, Overlay, plain
 
 CONTRACT = [
-    "format",
-    "tendonlab",
-    "dataset",
-    "system",
-    "seed",
-    "seconds",
-    "verdict",
-    "verdict_probability",
-    "replay",
-    "gap",
-    "where",
-    "effects",
-    "sets",
-    "selected",
-    "explained",
-    "indistinguishable",
-    "invisible",
-    "shrinkage",
-    "next_experiments",
-    "warnings",
-]
-FURTHER = {"calibrated", "held_out", "split", "details"}
-EFFECT = {"effect", "element", "probability", "parameters", "held_out_gain", "shrinkage"}
+    "format", "tendonlab", "dataset", "system", "seed", "seconds", "verdict", "verdict_probability", "calibrated",
+    "replay", "gap", "where", "effects", "sets", "selected", "explained", "indistinguishable", "invisible",
+    "shrinkage", "next_experiments", "data", "warnings",
+]  # fmt: skip
+FURTHER = ["held_out", "split", "details"]
+VERDICTS = {"data_fault", "no_gap", "parameters_only", "effect", "unknown_effect"}
+EFFECT = {"effect", "element", "probability", "parameters", "held_out_gain", "shrinkage", "extra"}
 
 
 def test_keys_are_those_of_the_contract(diagnosis: Diagnosis) -> None:
     written = diagnosis.to_dict()
-    assert [key for key in written if key not in FURTHER] == CONTRACT
+    assert list(written) == CONTRACT + FURTHER
+    assert set(written["verdict_probability"]) == VERDICTS
     assert written["format"] == "tendonlab-diagnosis/1"
     assert isinstance(written["calibrated"], bool)
     for values in written["gap"].values():
@@ -48,7 +33,7 @@ def test_keys_are_those_of_the_contract(diagnosis: Diagnosis) -> None:
     assert set(written["where"]) == {"signals", "elements", "regimes"}
     assert set(written["shrinkage"]) == {"from_nominal", "from_refitted"}
     for found in written["effects"]:
-        assert set(found) - {"extra"} == EFFECT
+        assert set(found) == EFFECT
 
 
 def test_file_is_strict_json_and_equals_to_dict(diagnosis: Diagnosis, tmp_path: Path) -> None:
@@ -80,11 +65,13 @@ def test_a_value_without_a_json_form_is_named() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"verdict": "maybe"}, "verdict = 'maybe': expected one of no_gap"),
+        ({"verdict": "maybe"}, "verdict = 'maybe': expected one of data_fault, no_gap"),
         ({"gap": {"joint_angle": {"noise_floor": 1.0}}}, "gap of joint_angle lacks nominal"),
         ({"shrinkage": {}}, "shrinkage lacks from_nominal"),
         ({"selected": ("stribeck",)}, "'stribeck': expected element:effect"),
         ({"replay": {}}, "replay lacks kind"),
+        ({"verdict_probability": {"effect": 1.0}}, "verdict_probability lacks data_fault"),
+        ({"data": ({"problem": "sign"},)}, r"data\[0\] lacks signal"),
     ],
 )
 def test_a_broken_result_says_what_is_missing(with_effect: Diagnosis, change: dict[str, object], message: str) -> None:
@@ -102,4 +89,3 @@ def test_effect_without_shrinkage_writes_null() -> None:
     found = EffectFinding(effect="delay", element="actuation", probability=0.1)
     assert found.name == "actuation:delay"
     assert found.to_dict()["shrinkage"] is None
-    assert "extra" not in found.to_dict()

@@ -83,10 +83,11 @@ def test_files_written(with_effect: Diagnosis, tmp_path: Path) -> None:
 
 
 def test_a_report_that_fails_leaves_the_earlier_one(with_effect: Diagnosis, tmp_path: Path) -> None:
-    with_effect.report(tmp_path)
+    bare = replace(with_effect, overlay=None, where_map=())
+    bare.report(tmp_path, figures=False)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     with pytest.raises(ParameterError, match="complex"):
-        replace(with_effect, seed=7, details={"odd": 2j}).report(tmp_path)
+        replace(bare, seed=7, details={"odd": 2j}).report(tmp_path, figures=False)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
@@ -221,7 +222,7 @@ def test_the_summary_names_no_regime_that_chance_explains(with_effect: Diagnosis
         {"coordinate": "time", "range": [8.0, 12.0], "share": 0.9, "p_value": 0.2},
     ]
     words = " ".join(read(replace(with_effect, where={**with_effect.where, "regimes": regimes}), tmp_path)[1].text)
-    assert "is concentrated at joint velocity 0 to 0.05 rad/s (40 % of the excess)" in words
+    assert "mainly at joint velocity 0 to 0.05 rad/s (40 % of the excess)" in words
 
 
 def test_fitted_parameters_and_settings_carry_their_units(with_effect: Diagnosis, tmp_path: Path) -> None:
@@ -229,11 +230,28 @@ def test_fitted_parameters_and_settings_carry_their_units(with_effect: Diagnosis
     details = {"parameters": {"cable_stiffness": stiffness}, "noise": {"joint_angle": 2.1e-4}}
     page = read(replace(with_effect, details=details), tmp_path)[1]
     assert {"Parameters with the effect", "Cable stiffness ", "(N·m/rad)", "40 to 44"} <= set(page.text)
-    assert "joint angle 210 µrad" in page.text
+    assert "joint angle 210 µrad (standard deviation)" in page.text
 
 
 def test_parameters_that_nothing_informs_show_no_interval(with_effect: Diagnosis, tmp_path: Path) -> None:
     silent = {"value": 0.01, "ci95": [0.004, 0.016], "unit": "m", "nominal": 0.01, "informed": False}
     page = read(replace(with_effect, details={"parameters": {"motor_radius_2": silent}}), tmp_path)[1]
-    assert "not informed by these data" in page.text
+    assert "not constrained by these data" in page.text
     assert not {"4 to 16", "0.004 to 0.016"} & set(page.text)
+
+
+def test_problems_of_the_logs_are_shown_only_where_there_are_some(with_effect: Diagnosis, tmp_path: Path) -> None:
+    quiet = " ".join(read(with_effect, tmp_path)[1].text)
+    assert "what looks wrong with the logs" not in quiet
+    lag = {"problem": "clock", "signal": None, "experiment": "swing-7", "detail": "lags the others by 20 ms"}
+    loud = replace(with_effect, data=({**lag, "blocks": True},))
+    words = " ".join(read(loud, tmp_path)[1].text)
+    assert "Clock: lags the others by 20 ms" in words
+    assert "(experiment swing-7; must be corrected before a diagnosis)" in words
+    assert loud.to_dict()["data"] == [{**lag, "blocks": True}]
+
+
+def test_gains_of_the_replay_carry_their_units(with_effect: Diagnosis, tmp_path: Path) -> None:
+    replay = {"kind": "injection", "kp": 0.8, "kd": 0.01, "kp_unit": "N*m/rad", "kd_unit": "N*m*s/rad"}
+    words = " ".join(read(replace(with_effect, replay=replay), tmp_path)[1].text)
+    assert "kp = 0.8 N·m/rad; kd = 0.01 N·m·s/rad." in words

@@ -105,16 +105,18 @@ def test_units() -> None:
 
 def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
     expected = {
-        "effect": "An unmodelled effect explains the gap: Stribeck friction at the joint (probability 0.93, not yet "
-        "calibrated), which these data cannot tell from presliding friction at the joint; adding it shrinks the "
-        "held-out gap by 91 % (88–94 %).",
-        "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor "
-        "(probability 0.97).",
-        "parameters_only": "Only parameter values were off, and no effect is missing (probability 0.90, not yet "
-        "calibrated); re-identifying them shrinks the held-out gap by 94 % (91–96 %).",
-        "unknown_effect": "The library explains only a part of the gap (probability 0.88, not yet calibrated): "
-        "presliding friction at the joint and load-dependent friction at the joint are established and explain 71 % "
-        "of the excess error, the rest is unknown.",
+        "effect": "An unmodelled effect explains the gap: Stribeck friction at the joint. These data cannot tell it "
+        "from presliding friction at the joint. Adding it shrinks the held-out gap by 91 % (88–94 %). Probability that "
+        "this is the whole explanation: 0.93, not yet calibrated.",
+        "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor. Probability of "
+        "this verdict: 0.97.",
+        "parameters_only": "Only parameter values were off, and no effect is missing. Re-identifying them shrinks the "
+        "held-out gap by 94 % (91–96 %). Probability of this verdict: 0.90, not yet calibrated.",
+        "unknown_effect": "The library explains only a part of the gap. Presliding friction at the joint and "
+        "load-dependent friction at the joint are established and explain 71 % of the excess error; the rest is "
+        "unknown. Probability of this verdict: 0.88, not yet calibrated.",
+        "data_fault": "The logs cannot be right: all inertial and gravity torques come out negative: −1.03 of what is "
+        "stated. Nothing is said about effects. Probability of this verdict: > 0.99, not yet calibrated.",
     }
     assert diagnosis.sentence == expected[diagnosis.verdict]
 
@@ -123,20 +125,27 @@ def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> Non
     nothing = {"from_nominal": None, "from_refitted": None}
     both = replace(with_effect, selected=("joint:stribeck", "joint:presliding"), calibrated=True, shrinkage=nothing)
     assert both.sentence == (
-        "Two unmodelled effects explain the gap: Stribeck friction at the joint and presliding friction at the joint "
-        "(probability 0.04)."
+        "Two unmodelled effects explain the gap: Stribeck friction at the joint and presliding friction at the joint. "
+        "Probability that this is the whole explanation: 0.04."
     )
-    assert "probability 0.21" in replace(both, sets=()).sentence  # the less certain of the two
+    assert "explanation: 0.21" in replace(both, sets=()).sentence  # the less certain of the two
 
 
 def test_the_sentence_is_never_surer_than_its_verdict(with_effect: Diagnosis) -> None:
-    doubt = {"no_gap": 0.0, "parameters_only": 0.0, "effect": 0.7, "unknown_effect": 0.3}
-    assert "probability 0.70" in replace(with_effect, verdict_probability=doubt).sentence  # its set alone: 0.93
+    doubt = {"data_fault": 0.0, "no_gap": 0.0, "parameters_only": 0.0, "effect": 0.7, "unknown_effect": 0.3}
+    assert "explanation: 0.70" in replace(with_effect, verdict_probability=doubt).sentence  # its set alone: 0.93
+
+
+def test_an_effect_that_does_not_help_is_not_said_to_shrink_the_gap(with_effect: Diagnosis) -> None:
+    worse = {**with_effect.shrinkage, "from_refitted": {"value": -0.31, "ci95": [-0.4, -0.24]}}
+    assert "Adding it does not shrink the held-out gap." in replace(with_effect, shrinkage=worse).sentence
+    useless = replace(with_effect, verdict="unknown_effect", explained=0.0).sentence
+    assert "is established but explains nothing of the excess error on held-out experiments" in useless
 
 
 @pytest.mark.parametrize(
     ("nats", "told"),
-    [(35.2, "expected gain 35 nats"), (7.3e5, "expected gain over 100 nats"), (float("nan"), ""), (None, "")],
+    [(35.2, "expected evidence 35 nats"), (7.3e5, "expected evidence over 100 nats"), (float("nan"), ""), (None, "")],
 )
 def test_gains_in_words(nats: float | None, told: str) -> None:
     assert words.gain_words(nats) == told

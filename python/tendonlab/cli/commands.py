@@ -176,7 +176,7 @@ def _diagnose(given: Arguments) -> int:
 
 
 def _print_diagnosis(diagnosis: Diagnosis, out: Path | None) -> None:
-    from tendonlab.cli.text import diagnosis_text
+    from tendonlab.cli.diagnosis_text import diagnosis_text
 
     print(diagnosis_text(diagnosis))
     report = "none written; --out DIR writes one" if out is None else out / "report.html"

@@ -5,24 +5,20 @@ from __future__ import annotations
 import shutil
 import textwrap
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tendonlab.diagnosis.confusions import confusions
-from tendonlab.report.numbers import number, prefixed, probability, span, unit_text
-from tendonlab.report.words import REPLAYS, capital, gain_words, listing, parameter_words, phrase, separation
+from tendonlab.report.numbers import number, prefixed, span, unit_text
+from tendonlab.report.words import listing
 from tendonlab.simulation.catalog import parameter_unit, unit
 
 if TYPE_CHECKING:
     from tendonlab.data import Experiment
     from tendonlab.identification.result import Identification
-    from tendonlab.report.diagnosis import Diagnosis, EffectFinding
     from tendonlab.simulation.catalog import Effect, SystemInfo
     from tendonlab.simulation.trajectory import Trajectory
 
 WIDEST = 110  # columns: longer lines are hard to read, however wide the terminal
-_BAR = 20  # columns of a probability of 1
-_LEAST = 0.01  # probability below which a candidate is not worth a line
-_SHOWN = 6
 _CLOSE = 0.95  # correlation of two fitted parameters beyond which the data hardly tell them apart
 
 
@@ -55,78 +51,8 @@ def table(rows: Sequence[Sequence[str]], *, right: Iterable[int] = (), indent: s
     return "\n".join(lines)
 
 
-def diagnosis_text(diagnosis: Diagnosis) -> str:
-    """The diagnosis on one screen: verdict, gap, likely effects, what stays open, what to measure next."""
-    parts = [
-        wrapped(diagnosis.sentence),
-        _gap(diagnosis),
-        _effects(diagnosis),
-        _open_questions(diagnosis),
-        _items("Next experiments", [_experiment(item) for item in diagnosis.next_experiments], numbered=True),
-        _items("Notes", diagnosis.warnings),
-    ]
-    return "\n\n".join(part for part in parts if part)
-
-
-def _gap(diagnosis: Diagnosis) -> str:
-    stages = ["noise_floor", "nominal", "refitted", *(["with_effect"] if diagnosis.selected else [])]
-    rows = [["signal", "unit", *(stage.replace("_", " ") for stage in stages)]]
-    for signal, values in diagnosis.gap.items():
-        shown = [values[stage] for stage in stages]
-        factor, unit = prefixed(shown, diagnosis.units.get(signal, ""))
-        rows.append([signal, unit, *(number(None if v is None else factor * v) for v in shown)])
-    how = REPLAYS.get(str(diagnosis.replay["kind"]), str(diagnosis.replay["kind"]))
-    return f"{wrapped(f'Error on held-out experiments, RMS ({how})')}\n{table(rows, right=range(2, len(rows[0])))}"
-
-
-def _effects(diagnosis: Diagnosis) -> str:
-    likely = [e for e in diagnosis.effects if e.probability >= _LEAST or e.name in diagnosis.selected]
-    shown = [e for place, e in enumerate(likely) if place < _SHOWN or e.name in diagnosis.selected]
-    if not shown:
-        return ""
-    longest = max(len(effect.name) for effect in shown)
-    lines = []
-    for effect in shown:
-        bar = "█" * max(1, round(_BAR * effect.probability))
-        chosen = "  added" if effect.name in diagnosis.selected else ""
-        lines.append(f"  {effect.name.ljust(longest)}  {probability(effect.probability):>6}  {bar.ljust(_BAR)}{chosen}")
-        lines[-1] = lines[-1].rstrip()
-        if chosen:
-            lines += [f"    {parameter}" for parameter in _parameters(effect)]
-    return "\n".join(["Probability that an effect is part of the cause", *lines])
-
-
-def _parameters(effect: EffectFinding) -> list[str]:
-    found = []
-    for name, of in effect.parameters.items():
-        bounds = of.get("ci95")
-        shown = [of["value"], *(bounds or [])]
-        factor, unit = prefixed(shown, str(of.get("unit", "")))
-        between = span([factor * b for b in bounds]) if bounds and None not in bounds else ""
-        interval = f" (95 %: {between})" if between else ""
-        value = None if of["value"] is None else factor * of["value"]
-        found.append(f"{parameter_words(name, element=effect.element)} = {number(value)} {unit}".rstrip() + interval)
-    return found
-
-
-def _open_questions(diagnosis: Diagnosis) -> str:
-    groups = ((phrase(name, diagnosis.system) for name in group) for group in diagnosis.indistinguishable)
-    tied = [listing(group, last="or") for group in groups]
-    parts = [_items("These data cannot tell apart", tied)]
-    if diagnosis.invisible:
-        text = listing(diagnosis.invisible)
-        parts.append("These data say nothing about\n" + wrapped(text, indent="  "))
-    return "\n\n".join(part for part in parts if part)
-
-
-def _experiment(item: Any) -> str:
-    names = item.get("separates") or []
-    aside = [separation(names) if names else "", gain_words(item.get("expected_gain"))]
-    told = "; ".join(part for part in aside if part)
-    return capital(str(item["description"])) + (f" ({told})" if told else "")
-
-
-def _items(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
+def bullets(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
+    """A list below its title, which may be empty; nothing where there are no items."""
     if not items:
         return ""
     marks = [f"{place}." if numbered else "-" for place in range(1, len(items) + 1)]
@@ -134,22 +60,24 @@ def _items(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
         wrapped(item, indent=f"  {mark} ", hanging=" " * (3 + len(mark)))
         for mark, item in zip(marks, items, strict=True)
     ]
-    return "\n".join([title, *lines])
+    return "\n".join([title, *lines] if title else lines)
 
 
 def identification_text(fit: Identification) -> str:
-    """The fitted parameters, a line each, and what deserves a second look."""
+    """The fitted parameters, one per line, and what deserves a second look."""
     rows = [["parameter", "nominal", "fitted", "95 %", "unit", ""]]
     for name, row in fit.parameters.iterrows():
         shown = [float(row[key]) for key in ("nominal", "value", "ci95_lower", "ci95_upper")]
         factor, unit = prefixed(shown, str(row["unit"]))
         nominal, value, lower, upper = (factor * each for each in shown)
-        doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "not informed by these data: held"
+        doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "not constrained by these data: held"
         rows.append([str(name), number(nominal), number(value), span([lower, upper]), unit, doubt])
-    state = "Converged" if fit.converged else f"NOT converged: {fit.message}"
-    told = f"{state} after {fit.num_iterations} iterations, {len(fit.residuals)} experiments fitted together."
-    tied = _items("Hard to tell apart", _correlated(fit))
-    parts = [wrapped(told), table(rows, right=(1, 2)), _fit_errors(fit), tied, _items("Notes", fit.warnings)]
+    num = len(fit.residuals)
+    fitted = f"{num} experiments fitted together" if num > 1 else "1 experiment fitted"
+    state = f"Converged after {fit.num_iterations} iterations" if fit.converged else f"Not converged: {fit.message}"
+    summary = f"{state}; {fitted}."
+    tied = bullets("Hard to tell apart", _correlated(fit))
+    parts = [wrapped(summary), table(rows, right=(1, 2)), _fit_errors(fit), tied, bullets("Notes", fit.warnings)]
     return "\n\n".join(part for part in parts if part)
 
 
@@ -172,7 +100,7 @@ def _correlated(fit: Identification) -> list[str]:
 
 
 def errors_text(run: Trajectory, experiment: Experiment) -> str:
-    """How far a simulated experiment is from what was measured, a line an output."""
+    """How far a simulated experiment is from what was measured, one output per line."""
     rows = [["signal", "unit", "RMS error", "RMS measured", "largest error"]]
     for signal in run.outputs.columns:
         if signal not in experiment.data.columns:

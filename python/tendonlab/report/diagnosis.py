@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,14 +13,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendonlab.errors import ParameterError
+from tendonlab.report.words import STAGES, VERDICTS
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-VERDICTS = ("no_gap", "parameters_only", "effect", "unknown_effect")
-STAGES = ("nominal", "refitted", "with_effect")
+FORMAT = "tendonlab-diagnosis/1"
 Floats = NDArray[np.float64]
+
+
+_DRAWN: Mapping[str, Any] = {"write": None}  # metadata of a field that report.json leaves out
+_BY_ROW: Mapping[str, Any] = {"write": lambda frame: frame.to_dict(orient="index")}
+
+
+def version() -> str:
+    """The version of tendonlab that runs, "0.0.0" where it is used without being installed."""
+    from importlib import metadata
+
+    try:
+        return metadata.version("tendonlab")
+    except metadata.PackageNotFoundError:
+        return "0.0.0"
 
 
 def _empty_table() -> pd.DataFrame:
@@ -52,11 +66,8 @@ class EffectFinding:
         return f"{self.element}:{self.effect}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain types; the evidence is written under `extra`, if there is any."""
-        keys = ("effect", "element", "probability", "parameters", "held_out_gain", "shrinkage")
-        entry = {key: getattr(self, key) for key in keys} | ({"extra": self.extra} if self.extra else {})
-        written: dict[str, Any] = plain(entry)
-        return written
+        """Plain types, field by field."""
+        return {f.name: plain(getattr(self, f.name), key=f.name) for f in fields(self)}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,13 +128,15 @@ class SideTable:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Diagnosis:
-    """Why the simulator and the rig disagree. The first fields are those of report.json, whose shapes they share.
+    """Why the simulator and the rig disagree. Its fields are the keys of report.json, which docs/datasets.md explains;
+    those with `write` None in their metadata are only drawn.
 
     `gap` is by output, RMS in its unit: noise_floor, nominal, refitted, with_effect, on held-out experiments. `units`:
     unit of every signal and coordinate. `held_out`: one row per held-out experiment, columns nominal, refitted,
-    with_effect: the gap there, pooled over outputs, in noise floors. `split`: names under "train" and "test".
-    `details`: whatever else says how it was computed. Raises ParameterError where a part of the contract is missing or
-    the verdict is unknown.
+    with_effect: the gap there, pooled over outputs, in noise floors. `data`: problems of the logs, worst first, each
+    with problem, signal, experiment, detail and blocks. `split`: names under "train" and "test". `details`: whatever
+    else says how it was computed. Raises ParameterError where a part of the contract is missing or the verdict is
+    unknown.
     """
 
     dataset: str
@@ -132,6 +145,7 @@ class Diagnosis:
     seconds: float
     verdict: str
     verdict_probability: Mapping[str, float]
+    calibrated: bool = False
     replay: Mapping[str, Any]
     gap: Mapping[str, Mapping[str, float]]
     where: Mapping[str, Sequence[Mapping[str, Any]]]
@@ -143,15 +157,15 @@ class Diagnosis:
     invisible: tuple[str, ...]
     shrinkage: Mapping[str, Mapping[str, Any] | None]
     next_experiments: tuple[Mapping[str, Any], ...]
+    data: tuple[Mapping[str, Any], ...] = ()
     warnings: tuple[str, ...]
-    calibrated: bool = False
-    units: Mapping[str, str] = field(default_factory=dict, repr=False)
-    overlay: Overlay | None = field(default=None, repr=False)
-    where_map: tuple[WhereMap, ...] = field(default=(), repr=False)
-    held_out: pd.DataFrame = field(default_factory=_empty_table, repr=False)
-    table: SideTable | None = field(default=None, repr=False)
-    split: Mapping[str, Sequence[str]] = field(default_factory=dict, repr=False)
-    details: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    held_out: pd.DataFrame = field(default_factory=_empty_table, metadata=_BY_ROW)
+    split: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    details: Mapping[str, Any] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict, metadata=_DRAWN)
+    overlay: Overlay | None = field(default=None, metadata=_DRAWN)
+    where_map: tuple[WhereMap, ...] = field(default=(), metadata=_DRAWN)
+    table: SideTable | None = field(default=None, metadata=_DRAWN)
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
@@ -160,6 +174,8 @@ class Diagnosis:
         _require_keys("replay", self.replay, ("kind",))
         _require_keys("where", self.where, ("signals", "elements", "regimes"))
         _require_keys("shrinkage", self.shrinkage, ("from_nominal", "from_refitted"))
+        for place, entry in enumerate(self.data):
+            _require_keys(f"data[{place}]", entry, ("problem", "signal", "experiment", "detail", "blocks"))
         for signal, values in self.gap.items():
             _require_keys(f"gap of {signal}", values, ("noise_floor", *STAGES))
         for name in self.selected:
@@ -174,37 +190,10 @@ class Diagnosis:
         return sentence(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The content of report.json (docs/datasets.md): plain types, None in place of NaN."""
-        from tendonlab.report.sentence import version
-
-        head = {"format": "tendonlab-diagnosis/1", "tendonlab": version()}
-        keys = (
-            "dataset",
-            "system",
-            "seed",
-            "seconds",
-            "verdict",
-            "verdict_probability",
-            "calibrated",
-            "replay",
-            "gap",
-            "where",
-            "effects",
-            "sets",
-            "selected",
-            "explained",
-            "indistinguishable",
-            "invisible",
-            "shrinkage",
-            "next_experiments",
-            "warnings",
-        )
-        body = {key: getattr(self, key) for key in keys}
-        body["effects"] = [finding.to_dict() for finding in self.effects]
-        further: dict[str, Any] = {"held_out": self.held_out.to_dict(orient="index")} if len(self.held_out) else {}
-        further |= {key: getattr(self, key) for key in ("split", "details") if getattr(self, key)}
-        written: dict[str, Any] = plain(head | body | further)
-        return written
+        """The content of report.json, as docs/datasets.md explains it: plain types, None in place of NaN."""
+        body = {f.name: (f.metadata.get("write", _as_it_is), getattr(self, f.name)) for f in fields(self)}
+        written = {name: plain(write(value), key=name) for name, (write, value) in body.items() if write is not None}
+        return {"format": FORMAT, "tendonlab": version(), **written}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """The candidate effects, most probable first, on `ax` or on new axes."""
@@ -230,6 +219,10 @@ class Diagnosis:
         return f"<p><b>{escape(self.sentence)}</b></p>{effects_table(self)}"
 
 
+def _as_it_is(value: Any) -> Any:
+    return value
+
+
 def plain(value: Any, *, key: str = "value") -> Any:
     """`value` in JSON's own types: arrays and tuples as lists, numbers as int and float, None for NaN and infinity.
 
@@ -242,6 +235,8 @@ def plain(value: Any, *, key: str = "value") -> Any:
         return value if math.isfinite(value) else None
     if isinstance(value, Path):
         return str(value)
+    if isinstance(value, EffectFinding):
+        return value.to_dict()
     if isinstance(value, Mapping):
         return {str(name): plain(item, key=f"{key}.{name}") for name, item in value.items()}
     if isinstance(value, list | tuple):
@@ -249,7 +244,7 @@ def plain(value: Any, *, key: str = "value") -> Any:
     raise ParameterError(f"{key} is a {type(value).__name__}: expected a number, text, list or mapping")
 
 
-def _require_keys(name: str, mapping: Mapping[str, Any], keys: Sequence[str]) -> None:
+def _require_keys(name: str, mapping: Mapping[str, Any], keys: Collection[str]) -> None:
     missing = [key for key in keys if key not in mapping]
     if missing:
         raise ParameterError(f"{name} lacks {', '.join(missing)}: expected {', '.join(keys)}")

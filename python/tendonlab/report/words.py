@@ -9,6 +9,7 @@ from tendonlab.report.numbers import number
 from tendonlab.simulation.catalog import kinds, system_info
 
 VERDICTS = {
+    "data_fault": "Data fault",
     "no_gap": "No gap",
     "parameters_only": "Parameters only",
     "effect": "Effect identified",
@@ -49,6 +50,11 @@ def phrase(name: str, kind: str) -> str:
     return known.get(name, f"{words(effect)} in the {words(element)}" if element else words(name))
 
 
+def phrases(names: Iterable[str], kind: str, *, last: str = "and") -> str:
+    """Effects of the system `kind` as a list in a sentence."""
+    return listing((phrase(name, kind) for name in names), last=last)
+
+
 def parameter_words(name: str, *, element: str = "") -> str:
     """A parameter's words, without the element where the text around already names it."""
     own = name.removeprefix(f"{element}_") if element else name
@@ -74,10 +80,11 @@ def separation(names: Sequence[str]) -> str:
 
 
 def gain_words(nats: float | None) -> str:
-    """What an experiment is expected to tell, with no digit that would not matter; empty where it is not known."""
+    """The evidence that an experiment is expected to bring, with no digit that would not matter; empty where it is not
+    known."""
     if nats is None or not math.isfinite(nats):
         return ""
-    return f"expected gain {'over 100' if nats > _DECISIVE else number(nats, 2)} nats"
+    return f"expected evidence {'over 100' if nats > _DECISIVE else number(nats, 2)} nats"
 
 
 def unit_of(coordinate: str, units: Mapping[str, str]) -> str:

@@ -1,0 +1,103 @@
+"""Where: the signals, elements and regimes in which the error of the refitted simulator lies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tendonlab.report import numbers, words
+from tendonlab.report.blocks import Block, Cell, Columns, Figure, Table, Text
+from tendonlab.report.diagnosis import Diagnosis
+
+CLEAR = 0.05  # p-value up to which the summary says that the error is concentrated in a regime
+LEAST = 0.005  # probability below which an element is not worth a row of its own
+_P_VALUE = (
+    "p-value: how often the same error, shifted in time against the motion, would be as concentrated by chance. "
+    "It is not corrected for the number of regimes compared."
+)
+
+
+def location(diagnosis: Diagnosis) -> list[Block]:
+    """A sentence, tables of elements, signals and regimes, and the map."""
+    summary = _summary(diagnosis) or "No signal, element or regime stands out over the noise floor."
+    blocks: list[Block] = [Text(text=summary, brief=True)]
+    tables = [table for table in (_elements(diagnosis), _signals(diagnosis)) if table.rows]
+    if tables:
+        blocks.append(Columns(tables=tables))
+    if diagnosis.where["regimes"]:
+        blocks += [_regimes(diagnosis), Text(text=_P_VALUE, note=True)]
+    scale = "; both panels share one scale" if diagnosis.selected else ""
+    caption = f"Residual over the plane of motion, in multiples of the noise floor{scale}. Empty cells hold no data."
+    return [*blocks, Figure(name="where", caption=caption, small=not diagnosis.selected)]
+
+
+def _summary(diagnosis: Diagnosis) -> str:
+    """The largest entry of each list of `where`; empty where nothing stands out."""
+    sentences = []
+    if elements := diagnosis.where["elements"]:
+        first = max(elements, key=lambda entry: entry["probability"])
+        source = words.element_words(first["element"], diagnosis.system, article=True)
+        sure = numbers.probability(first["probability"])
+        sentences.append(f"After tuning, the remaining error most likely comes from {source} (probability {sure}).")
+    largest = []
+    if signals := diagnosis.where["signals"]:
+        first = max(signals, key=lambda entry: entry["share"])
+        largest.append(f"in the {words.words(first['signal'])} ({_of_excess(first['share'])})")
+    if clear := [r for r in diagnosis.where["regimes"] if r.get("p_value") is not None and r["p_value"] <= CLEAR]:
+        first = max(clear, key=lambda entry: entry["share"] or 0.0)
+        largest.append(
+            f"{'mainly ' if largest else ''}at {_regime_words(diagnosis, first)} ({_of_excess(first['share'])})"
+        )
+    if largest:
+        sentences.append(f"{'It' if sentences else 'The remaining error'} is largest {', '.join(largest)}.")
+    return " ".join(sentences)
+
+
+def _of_excess(share: float | None) -> str:
+    return f"{numbers.percent(share)} of the excess"
+
+
+def _elements(diagnosis: Diagnosis) -> Table:
+    """Elements worth a row; the others share one without a number of its own."""
+    entries = diagnosis.where["elements"]
+    rows = [
+        [
+            Cell(words.capital(words.element_words(e["element"], diagnosis.system))),
+            _share(e["probability"], numbers.probability),
+        ]
+        for e in entries
+        if e["probability"] >= LEAST
+    ]
+    others = len(entries) - len(rows)
+    if others:
+        rows.append([Cell(f"{others} other element{'s' if others > 1 else ''}"), Cell("< 0.01 each")])
+    return Table(columns=("Element", "Probability"), rows=rows)
+
+
+def _signals(diagnosis: Diagnosis) -> Table:
+    rows = [
+        [Cell(words.capital(words.words(entry["signal"]))), _share(entry["share"], numbers.percent)]
+        for entry in diagnosis.where["signals"]
+    ]
+    return Table(columns=("Signal", "Share of the excess"), rows=rows)
+
+
+def _regimes(diagnosis: Diagnosis) -> Table:
+    rows = [
+        [
+            Cell(words.capital(_regime_words(diagnosis, regime))),
+            _share(regime.get("share"), numbers.percent),
+            Cell(numbers.number(regime.get("p_value"), 2)),
+        ]
+        for regime in diagnosis.where["regimes"]
+    ]
+    return Table(columns=("Regime", "Share of the excess", "p-value"), rows=rows, right=frozenset({2}))
+
+
+def _regime_words(diagnosis: Diagnosis, regime: Mapping[str, Any]) -> str:
+    unit = numbers.unit_text(words.unit_of(regime["coordinate"], diagnosis.units))
+    return f"{words.words(regime['coordinate'])} {numbers.span(regime.get('range'))} {unit}".rstrip()
+
+
+def _share(value: float | None, text: Callable[[float | None], str]) -> Cell:
+    return Cell(text(value), share=value)

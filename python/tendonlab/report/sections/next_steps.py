@@ -1,0 +1,35 @@
+"""What next: the measurements that would decide most."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tendonlab.report.blocks import Block, Points, Text
+from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.report.words import capital, gain_words, phrase, separation
+
+_NOT_TIED = "No candidates are tied. These motions would test the selected effect against its closest competitor."
+_GAIN = (
+    "Expected evidence: how far the simulator expects the experiment to favour the true explanation, in nats. About 10 "
+    "nats decide; beyond 100 the size no longer matters."
+)
+
+
+def next_steps(diagnosis: Diagnosis) -> list[Block]:
+    """The proposed experiments, best first."""
+    if not diagnosis.next_experiments:
+        return [Text(text="No further measurement is proposed.")]
+    items = [
+        (capital(str(entry["description"])), _purpose(entry, diagnosis.system)) for entry in diagnosis.next_experiments
+    ]
+    why = [] if diagnosis.indistinguishable else [Text(text=_NOT_TIED, brief=True)]
+    gains = any(entry.get("expected_gain") is not None for entry in diagnosis.next_experiments)
+    note = [Text(text=_GAIN, note=True)] if gains else []
+    return [*why, Points(items=items, style="numbered", brief=True), *note]
+
+
+def _purpose(entry: Mapping[str, Any], kind: str) -> str:
+    names = [phrase(name, kind) for name in entry.get("separates") or []]
+    parts = [separation(names) if names else "", gain_words(entry.get("expected_gain"))]
+    return "; ".join(part for part in parts if part)
