@@ -153,6 +153,36 @@ BROKEN: list[tuple[str, Mutation, str]] = [
         put("experiments.1.name", "one"),
         r"experiments\[1\].name: duplicate experiment name 'one'",
     ),
+    (
+        "one file twice",
+        put("experiments.1.file", "./one.csv"),
+        r"experiments\[1\].file: 'one.csv' is the file of 'one' too",
+    ),
+    (
+        "absolute file",
+        put("experiments.0.file", "/etc/one.csv"),
+        r"experiments\[0\].file: '/etc/one.csv' is outside the",
+    ),
+    (
+        "file above the folder",
+        put("experiments.0.file", "a/../../one.csv"),
+        r"is outside the dataset; expected",
+    ),
+    (
+        "one column for two outputs",
+        put("signals.joint_velocity.column", "q"),
+        r"signals.joint_angle.column: 'q' is the column of joint_velocity too",
+    ),
+    (
+        "one column for command and angle",
+        put("signals.motor_torque.column", "q"),
+        r"signals.joint_angle.column: 'q' is the column of motor_torque too",
+    ),
+    (
+        "nothing moves",
+        all_of(samples("q", slice(None), 1.0, files=BOTH), samples("dq", slice(None), 0.1, files=BOTH)),
+        r"key signals: joint_angle, joint_velocity: constant in every experiment",
+    ),
     ("file missing", put("experiments.0.file", "none.csv"), r"none.csv: no such file"),
     ("file of unknown kind", put("experiments.0.file", "one.xlsx"), r"one.xlsx: unknown kind of file '.xlsx'.*\.csv"),
     ("unknown split", put("experiments.0.split", "training"), r"experiments\[0\].split: 'training'.*'train'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,14 +57,25 @@ def read_experiments(top: Table, context: Context) -> tuple[Experiment, ...]:
     """Every experiment with its samples, split into train and test. Raises DatasetError at the first violation."""
     tables = top.tables("experiments")
     splits = _splits(tables)
+    _check_names_and_files(tables)
+    return tuple(_read_experiment(table, split, context) for table, split in zip(tables, splits, strict=True))
+
+
+def _check_names_and_files(tables: list[Table]) -> None:
+    """Raise DatasetError unless every experiment has a name and a data file of its own, in the folder."""
     names: list[str] = []
+    owners: dict[str, str] = {}
     for table in tables:
         table.allow(KEYS)
-        name = table.text("name")
+        name, file = table.text("name"), posixpath.normpath(table.text("file"))
         if name in names:
             raise table.error("name", f"duplicate experiment name {name!r}")
+        if Path(file).is_absolute() or file.startswith(".."):
+            raise table.error("file", f"{table.text('file')!r} is outside the dataset; expected a file in its folder")
+        if file in owners:
+            raise table.error("file", f"{file!r} is the file of {owners[file]!r} too; expected one file per experiment")
         names.append(name)
-    return tuple(_read_experiment(table, split, context) for table, split in zip(tables, splits, strict=True))
+        owners[file] = name
 
 
 def split_is_given(top: Table) -> bool:

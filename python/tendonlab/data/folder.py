@@ -45,6 +45,7 @@ def load(path: str | PathLike[str]) -> Dataset:
     )
     experiments = read_experiments(top, context)
     _require_motion(experiments, signals.values(), info=info, controller=controller)
+    _require_moving_output(experiments, signals.values())
     command = signals.get("motor_torque")
     command_is_effort = command is None or command.si_unit == catalog.unit("effort", axis)
     warnings = [
@@ -88,6 +89,14 @@ def _require_motion(
             raise DatasetError(
                 f"{FILE}, key signals.{spec.name}: {problem} and identifies nothing; expected it to vary"
             )
+
+
+def _require_moving_output(experiments: tuple[Experiment, ...], signals: Iterable[SignalSpec]) -> None:
+    """Raise DatasetError where every output is constant in every experiment."""
+    outputs = [spec.name for spec in signals if spec.role == "output"]
+    if all(_is_constant((experiment,), name) for experiment in experiments for name in outputs):
+        problem = f"{', '.join(outputs)}: constant in every experiment, which identifies nothing"
+        raise DatasetError(f"{FILE}, key signals: {problem}; expected an output that varies")
 
 
 def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:

@@ -81,25 +81,12 @@ def _read_csv(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
     import pandas as pd
 
     try:
-        header, num_rows = _csv_shape(path)
+        header, first_row = _csv_start(path)
         for column in columns:
             if header.count(column) > 1:
                 problem = f"{header.count(column)} columns of that name"
                 raise DatasetError(f"{path.name}, row 1, column {column!r}: {problem}; expected one")
-        # Blank lines stay, so that a row in a message is the line of the file.
-        frame = pd.read_csv(
-            path,
-            encoding="utf-8-sig",
-            header=None,
-            names=list(range(len(header))),
-            skiprows=1,
-            nrows=num_rows,
-            skip_blank_lines=False,
-            skipinitialspace=True,
-            keep_default_na=False,
-            na_values=["", "nan", "NaN", "NAN"],
-            low_memory=False,
-        )
+        frame = _csv_frame(path, len(header), first_row)
     except UnicodeDecodeError as error:
         raise DatasetError(f"{path.name}: byte {error.start} is not UTF-8; expected a UTF-8 file") from error
     except pd.errors.EmptyDataError:
@@ -111,20 +98,61 @@ def _read_csv(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
     return _pick(path.name, {**dict.fromkeys(header), **numeric}, columns)
 
 
-def _csv_shape(path: Path) -> tuple[list[str], int]:
-    """The header and the number of rows below it, blank lines at the end left out; every row has a field a column."""
+def _csv_start(path: Path) -> tuple[list[str], int]:
+    """The names in the header, and how many values the row below it holds."""
     with path.open(encoding="utf-8-sig", newline="") as file:
         lines = csv.reader(file, skipinitialspace=True)
-        header = next(lines, [])
-        if not header:
-            raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
-        num_rows = 0
+        header, first_row = next(lines, []), next(lines, [])
+    if not header:
+        raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
+    return [name.strip() for name in header], len(first_row)
+
+
+def _csv_frame(path: Path, num_columns: int, first_row: int) -> pd.DataFrame:
+    """The rows below the header. pandas fills up short rows and takes a long first row for an index; the values of each
+    row are counted, which takes five times longer than reading them, only where that may have happened."""
+    import pandas as pd
+
+    try:
+        frame = _parse_csv(path, num_columns)
+        if first_row == num_columns and not frame[num_columns - 1].isna().any():
+            return frame
+    except pd.errors.ParserError:
+        pass
+    return _parse_csv(path, num_columns, num_rows=_count_rows(path, num_columns))
+
+
+def _parse_csv(path: Path, num_columns: int, *, num_rows: int | None = None) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.read_csv(
+        path,
+        encoding="utf-8-sig",
+        header=None,
+        names=list(range(num_columns)),
+        skiprows=1,
+        nrows=num_rows,
+        skip_blank_lines=False,  # so that a row in a message is the line of the file
+        skipinitialspace=True,
+        keep_default_na=False,
+        na_values=["", "nan", "NaN", "NAN"],
+        low_memory=False,
+    )
+
+
+def _count_rows(path: Path, num_columns: int) -> int:
+    """Number of rows below the header without blank lines at the end. Raises DatasetError at a row that is too short or
+    too long."""
+    num_rows = 0
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        lines = csv.reader(file, skipinitialspace=True)
+        next(lines)
         for row, line in enumerate(lines, start=1):
             num_rows = row if line else num_rows
-            if line and len(line) != len(header):
-                problem = f"{len(line)} values; expected {len(header)} as in the header"
+            if line and len(line) != num_columns:
+                problem = f"{len(line)} values; expected {num_columns} as in the header"
                 raise DatasetError(f"{path.name}, row {row + 1}: {problem}")
-    return [name.strip() for name in header], num_rows
+    return num_rows
 
 
 def _csv_numbers(file: str, column: str, values: pd.Series[Any]) -> np.ndarray:

@@ -22,6 +22,7 @@ def read_signals(top: Table, info: SystemInfo, *, axis: str, controller: Control
         expected = _expected_unit(name, info, axis=axis, controller=controller, command=command)
         specs[name] = _read_signal(table, name, role=role, expected=expected, hold=_holds(name, role, info))
     _require_inputs(tables, info)
+    _require_own_columns(tables, specs)
     if not any(spec.role == "output" for spec in specs.values()):
         names = ", ".join(output.name for output in info.outputs)
         raise top.error("signals", f"no output of {info.kind} is measured; expected at least one of {names}")
@@ -111,6 +112,16 @@ def _is_command(signal: Signal) -> bool:
 
 def _find(name: str, info: SystemInfo) -> Signal | None:
     return next((signal for signal in (*info.inputs, *info.outputs) if signal.name == name), None)
+
+
+def _require_own_columns(tables: Table, specs: dict[str, SignalSpec]) -> None:
+    """Raise DatasetError where an output is read from the column of another output or of an input."""
+    outputs = [spec for spec in specs.values() if spec.role == "output"]
+    for output in outputs:
+        for other in specs.values():
+            if other.name != output.name and other.role in ("input", "output") and other.column == output.column:
+                problem = f"{output.column!r} is the column of {other.name} too; expected one column per output"
+                raise tables.table(output.name).error("column", problem)
 
 
 def _require_inputs(tables: Table, info: SystemInfo) -> None:
