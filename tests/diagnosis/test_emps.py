@@ -45,5 +45,5 @@ def test_inverse_dynamics_beside_it_gives_the_published_values(emps: Any) -> Non
 
 def test_what_one_record_without_repeats_cannot_say_is_said(emps: Any) -> None:
     _, found = emps
-    assert any("no repeats" in warning for warning in found.warnings)
+    assert any("No repeated runs" in warning for warning in found.warnings)
     assert not found.calibrated

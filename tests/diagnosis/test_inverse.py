@@ -1,10 +1,10 @@
-"""Inverse dynamics beside the replay: each friction amplitude of an axis is a column of its regression."""
+"""Inverse dynamics: each friction amplitude of an axis is a column of its regression."""
 
 import numpy as np
 import pytest
 
 import tendonlab as tl
-from tendonlab.diagnosis.answer.inverse import _amplitudes, _column
+from tendonlab.diagnosis.answer.inverse import amplitudes, effort_column
 
 VELOCITY = np.array([-1.0, 0.5, 2.0])
 
@@ -27,10 +27,10 @@ def axis() -> tl.System:
 
 def test_direction_dependence_enters_by_its_law_of_friction(axis: tl.System) -> None:
     """Laws of other groups are called asymmetry too; they must not take its place."""
-    assert np.allclose(_column(axis, "viscous", VELOCITY), VELOCITY)
-    assert np.allclose(_column(axis, "coulomb", VELOCITY), np.sign(VELOCITY))
-    assert np.allclose(_column(axis, "joint_viscous_asymmetry", VELOCITY), abs(VELOCITY))
+    assert np.allclose(effort_column(axis, "viscous", VELOCITY), VELOCITY)
+    assert np.allclose(effort_column(axis, "coulomb", VELOCITY), np.sign(VELOCITY))
+    assert np.allclose(effort_column(axis, "joint_viscous_asymmetry", VELOCITY), abs(VELOCITY))
 
 
-def test_what_does_not_push_the_axis_is_no_column(axis: tl.System) -> None:
-    assert _amplitudes(axis) == ["viscous", "coulomb", "joint_viscous_asymmetry"]
+def test_what_does_not_push_the_axis_is_noeffort_column(axis: tl.System) -> None:
+    assert amplitudes(axis) == ["viscous", "coulomb", "joint_viscous_asymmetry"]

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab.diagnosis.answer.motions import RATE, _reach, motions
+from tendonlab.diagnosis.answer.motions import RATE, motions, seen_reach
 
 
 def test_proposals_respect_travel_speed_and_acceleration(twin_case: Any) -> None:
-    reach = _reach(twin_case, twin_case.outputs.index("motor_angle"))
+    reach = seen_reach(twin_case, twin_case.outputs.index("motor_angle"))
     for motion in motions(twin_case, "motor_angle"):
         speed = np.gradient(motion.path, 1 / RATE)
         assert np.all(np.abs(motion.path - reach.middle) <= 1.02 * reach.travel), motion.words

@@ -40,6 +40,7 @@ def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], 
     )
     verdict = decide(search.rounds, search.selected, levels)
     records = where.PortRecords(case, stages["with_effect"], judged)
+    held_out = _per_experiment(case, stages, floor, judged)
     rng = np.random.default_rng(seed)
     return Diagnosis(
         dataset=case.dataset.name,
@@ -47,7 +48,7 @@ def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], 
         seed=seed,
         verdict=verdict.verdict,
         verdict_probability=verdict.probability,
-        replay=case.replay.to_dict(),
+        replay=notes.replay(case),
         gap=_gap(case, stages, floor),
         where={
             "signals": where.signals(case, stages["refitted"], floor),
@@ -65,11 +66,11 @@ def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], 
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
         next_experiments=tuple(_next(case, floor, search) + _measurements(verdict.indistinguishable)),
-        warnings=tuple(notes.warnings(case, floor, search)),
+        warnings=(*notes.warnings(case, floor, search), *notes.not_improved(held_out, search.selected)),
         units=notes.units(case),
         overlay=_overlay(case, stages, floor, judged),
         where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),
-        held_out=_per_experiment(case, stages, floor, judged),
+        held_out=held_out,
         table=inverse_dynamics(case, [model.system for model in search.path], judged),
         split={
             "train": [case.experiments[i].name for i in case.train],

@@ -1,4 +1,4 @@
-"""Inverse dynamics beside the replay: the classical check of a rigid axis, a linear regression of its drive effort."""
+"""Inverse dynamics: the classical check of a rigid axis, a linear regression of its drive effort."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int
     motions = [_motion(case, i, output) for i in range(len(case.experiments))]
     rows = []
     for system in systems:
-        names = ["inertia", *_amplitudes(system)]
+        names = ["inertia", *amplitudes(system)]
         train = np.concatenate([_regressors(system, motions[i]) for i in case.train])
         effort = np.concatenate([motions[i][2] for i in case.train])
-        found = np.linalg.lstsq(train, effort, rcond=None)[0]
-        held = [motions[i][2] - _regressors(system, motions[i]) @ found for i in judged]
+        fit = np.linalg.lstsq(train, effort, rcond=None)[0]
+        held = [motions[i][2] - _regressors(system, motions[i]) @ fit for i in judged]
         added = [e for e in system.effects if e not in case.system.effects]
         rows.append(
-            {"model": " + ".join(["nominal structure", *added]), "fitted rms": _rms(effort - train @ found),
-             "held-out rms": _rms(np.concatenate(held)), **dict(zip(names, found, strict=True))}
+            {"model": " + ".join(["nominal structure", *added]), "fitted rms": _rms(effort - train @ fit),
+             "held-out rms": _rms(np.concatenate(held)), **dict(zip(names, fit, strict=True))}
         )  # fmt: skip
     unit = "N" if case.system.axis == "linear" else "N·m"
     return SideTable(
@@ -65,20 +65,24 @@ def _motion(case: Case, i: int, output: int) -> Motion:
     return velocity[kept], np.gradient(velocity, time)[kept], effort[kept]
 
 
-def _amplitudes(system: System) -> list[str]:
+def amplitudes(system: System) -> list[str]:
     """Amplitudes that enter the effort linearly: those of friction seen at the axis, and offsets."""
     info = system.info
     rows = [p for e in system.effects for p in map(info.parameter, info.effect(e).parameters)]
-    return [p.name for p in rows if p.purpose == "amplitude" and np.any(_column(system, p.name, np.array([-1.0, 0.5])))]
+    return [
+        p.name
+        for p in rows
+        if p.purpose == "amplitude" and np.any(effort_column(system, p.name, np.array([-1.0, 0.5])))
+    ]
 
 
 def _regressors(system: System, motion: Motion) -> np.ndarray:
     velocity, acceleration, _ = motion
-    return np.column_stack([acceleration, *(_column(system, name, velocity) for name in _amplitudes(system))])
+    return np.column_stack([acceleration, *(effort_column(system, name, velocity) for name in amplitudes(system))])
 
 
-def _column(system: System, name: str, velocity: np.ndarray) -> np.ndarray:
-    """What one amplitude adds to the drive effort, per unit: the force of its own law, everything else switched off."""
+def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray:
+    """Drive effort per unit of one amplitude: the force of its own law, everything else switched off."""
     p = system.info.parameter(name)
     own = {q: system.parameters[q] for q in system.info.effect(f"{p.element}:{p.effect}").parameters}
     switched = {

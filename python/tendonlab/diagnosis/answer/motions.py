@@ -34,7 +34,7 @@ class Reach:
 
 def motions(case: Case, output: str) -> list[Motion]:
     """Slow, middling and full reversals, micro motion and a sweep; with more payload where gravity acts."""
-    reach = _reach(case, case.outputs.index(output))
+    reach = seen_reach(case, case.outputs.index(output))
     place = output.replace("_", " ")
     made = [
         _reversals(reach, place, "slow reversals", 0.1, 0.1),
@@ -51,7 +51,8 @@ def motions(case: Case, output: str) -> list[Motion]:
     return made
 
 
-def _reach(case: Case, c: int) -> Reach:
+def seen_reach(case: Case, c: int) -> Reach:
+    """What the logs show of output c."""
     positions, speeds, accelerations = [], [], []
     for experiment, ready in zip(case.experiments, case.prepared, strict=True):
         kept = np.isfinite(ready.measured[c])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.search.select import Search
@@ -13,52 +14,89 @@ from tendonlab.fitting.noise import Floor
 from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS
 from tendonlab.simulation.catalog import unit
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatability is the limit
 
 
 def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
     """What weakens the answer."""
-    said = list(case.dataset.warnings)
+    return [*case.dataset.warnings, *_on_the_floor(floor), *_on_the_split(case), *_on_the_fits(search)]
+
+
+def _on_the_floor(floor: Floor) -> list[str]:
     if not floor.repeated:
-        said.append(
-            "no repeats: the floor is the sensors' noise and an assumed run-to-run variation of friction of "
-            f"{RUN_TO_RUN_UNKNOWN:.0%}; what the model leaves counts as noise, so that what is found is established "
-            "conservatively and what is not found may still be there"
-        )
+        return [
+            "No repeated runs, so the noise floor is assumed (sensor noise plus "
+            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % friction scatter). Effects reported here are safe; others may have been "
+            "missed. Repeat one run to measure the floor."
+        ]
+    if floor.tau > UNSTEADY:
+        return [f"Friction differs by {100 * floor.tau:.1f} % from run to run, which limits what can be said."]
+    return []
+
+
+def _on_the_split(case: Case) -> list[str]:
+    num, messages = len(case.train), []
     if not case.test:
-        few = "" if len(case.train) > 1 else "; with a single experiment they are those of the experiment fitted"
-        said.append(f"no experiment is held out: gaps and shrinkage leave one experiment out of the fit in turn{few}")
-    if len(case.train) < FEWEST_EXPERIMENTS:
-        said.append(
-            f"{len(case.train)} training experiment{'s' if len(case.train) > 1 else ''}: contiguous blocks of at least "
-            "2 s stand for experiments where one is left out"
-        )
-    silent = search.final.not_informed
-    bound = [
-        f.name for f, at in zip(search.final.free, search.final.at_bound, strict=True) if at and f.name not in silent
-    ]
+        how = "Each experiment is predicted by a fit to the others."
+        alone = "There is only one, so all errors are those of the fit itself, which is optimistic."
+        messages.append(f"No experiment is held out. {how if num > 1 else alone}")
+    if num < FEWEST_EXPERIMENTS:
+        only = f"Only {num} training experiment{'s' if num > 1 else ''}"
+        messages.append(f"{only}: cross-validation uses blocks of 2 s instead of whole experiments.")
+    return messages
+
+
+def _on_the_fits(search: Search) -> list[str]:
+    final, messages = search.final, []
+    silent = final.not_informed
+    bound = [f.name for f, at in zip(final.free, final.at_bound, strict=True) if at and f.name not in silent]
     if bound:
-        said.append(f"at a bound or the edge of its range: {', '.join(bound)}")
+        messages.append(f"At a bound: {', '.join(bound)}. Such a value is a limit and not an estimate.")
     if silent:
-        said.append(f"not informed by these data and held at the nominal value: {', '.join(silent)}")
-    if floor.repeated and floor.tau > UNSTEADY:
-        said.append(f"friction differs by {floor.tau:.1%} from run to run: repeatability limits what can be said")
-    for model in {m.added: m for m in (search.tuned, search.final)}.values():
+        messages.append(f"Not constrained by these data and held at the nominal value: {', '.join(silent)}.")
+    for model in {m.added: m for m in (search.tuned, final)}.values():
         if not model.converged:
-            said.append(
-                f"the fit of {', '.join(model.added) or 'the refitted simulator'} stopped early: {model.message}"
-            )
-    return said
+            name = f"the model with {', '.join(model.added)}" if model.added else "the refitted simulator"
+            messages.append(f"The fit of {name} did not converge: {model.message}.")
+    return messages
+
+
+def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
+    """A warning for each held-out experiment whose gap the selected effects do not shrink. `held_out`: the gap of each
+    experiment (row) at each stage (column), in noise floors."""
+    worse = held_out[held_out["with_effect"] >= held_out["refitted"]] if selected else held_out[:0]
+    return [
+        f"Held-out experiment {name}: {' and '.join(selected)} does not shrink the gap "
+        f"({row['refitted']:.3g} noise floors before, {row['with_effect']:.3g} after)."
+        for name, row in worse.iterrows()
+        if row["refitted"] > 0
+    ]
+
+
+def replay(case: Case) -> dict[str, Any]:
+    """How experiments were replayed: the kind, and the gains with their units."""
+    entry, info, axis = case.replay.to_dict(), case.system.info, case.system.axis
+    angle = next((unit(s.dimension, axis) for s in info.outputs if s.name == case.replay.output), None)
+    if entry["kp"] is None or angle is None:
+        return entry
+    logged = case.dataset.signals.get(info.inputs[0].name)
+    command = logged.si_unit if logged else unit(info.inputs[0].dimension, axis)
+    controller = case.system.controller
+    cascade = case.replay.kind == "controller" and controller is not None and controller.kind == "cascade"
+    return {**entry, "kp_unit": "1/s" if cascade else f"{command}/{angle}", "kd_unit": f"{command}*s/{angle}"}
 
 
 def units(case: Case) -> dict[str, str]:
     """Unit of every output and of every coordinate of the where-map."""
     info, axis = case.system.info, case.system.axis
-    found = {s.name: unit(s.dimension, axis) for s in info.outputs}
+    known = {s.name: unit(s.dimension, axis) for s in info.outputs}
     for port in info.ports:
         own = info.element_axes.get(port.element, axis)
-        found |= {f"{port.name}_{q}": unit(where.dimension(port, q), own) for q in where.COORDINATES}
-    return found | {"time": "s"}
+        known |= {f"{port.name}_{q}": unit(where.dimension(port, q), own) for q in where.COORDINATES}
+    return known | {"time": "s"}
 
 
 def details(case: Case, floor: Floor, nominal: Fitted, search: Search) -> dict[str, Any]:
@@ -75,12 +113,12 @@ def details(case: Case, floor: Floor, nominal: Fitted, search: Search) -> dict[s
     }
 
 
-def _parameter(case: Case, best: Fitted, name: str) -> dict[str, Any]:
-    value, interval = best.value(name)
+def _parameter(case: Case, model: Fitted, name: str) -> dict[str, Any]:
+    value, interval = model.value(name)
     return {
         "value": value,
         "ci95": list(interval),
-        "unit": best.system.unit(name),
+        "unit": model.system.unit(name),
         "nominal": case.system.parameters.get(name),
-        "informed": name not in best.not_informed,
+        "informed": name not in model.not_informed,
     }

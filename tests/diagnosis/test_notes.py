@@ -1,7 +1,9 @@
-"""What notes say of a fit."""
+"""What notes say of a fit, of the replay and of held-out experiments."""
 
 from dataclasses import replace
 from typing import Any
+
+import pandas as pd
 
 from tendonlab.diagnosis.answer import notes
 from tendonlab.diagnosis.search.select import Search
@@ -14,7 +16,19 @@ def test_what_the_experiments_state_themselves_is_told(fitter: Fitter, twin_case
     case = replace(twin_case, experiments=known)
     fitted = replace(fitter, case=case).fit(case.system, max_iterations=1)
     search = Search(fitter, tuned=fitted, steps=(), rounds=())
-    warning = "not informed by these data and held at the nominal value: gravity_torque"
+    warning = "Not constrained by these data and held at the nominal value: gravity_torque."
     assert warning in notes.warnings(case, fitter.floor, search)
     rows = notes.details(case, fitter.floor, fitted, search)["parameters"]
     assert [name for name, row in rows.items() if not row["informed"]] == ["gravity_torque"]
+
+
+def test_gains_of_a_replay_have_the_units_of_command_over_motion(twin_case: Any) -> None:
+    entry = notes.replay(twin_case)
+    assert (entry["kind"], entry["kp_unit"], entry["kd_unit"]) == ("controller", "N*m/rad", "N*m*s/rad")
+
+
+def test_a_held_out_experiment_that_gets_no_better_is_a_warning() -> None:
+    gap = pd.DataFrame({"nominal": [9.0, 9.0], "refitted": [2.06, 5.0], "with_effect": [2.09, 1.0]}, index=["a", "b"])
+    (warning,) = notes.not_improved(gap, ["joint:stribeck"])
+    assert warning.startswith("Held-out experiment a: joint:stribeck does not shrink the gap (2.06 noise floors before")
+    assert notes.not_improved(gap, []) == []
