@@ -27,7 +27,7 @@ def simulate(of, *, kind="rigid_joint", values=None, active=None, seeds=(), **op
 
 def test_unknown_system():
     with pytest.raises(ParameterError, match=r"three_inertia.*rigid_joint.*two_inertia"):
-        _core.system_info("three_inertia")
+        _core.SystemInfo("three_inertia")
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ def test_every_effect_of_a_system_has_a_phrase_of_its_own() -> None:
         phrases = [effect.phrase for effect in info.effects]
         assert len(set(phrases)) == len(phrases), kind
         assert not any("_" in phrase or "  " in phrase for phrase in phrases)
-        assert all(effect.phrase == f"{effect.noun} {info.places[effect.element]}" for effect in info.effects)
+        assert all(effect.phrase == f"{effect.noun} {info.element(effect.element).place}" for effect in info.effects)
 
 
 def test_elements_in_words() -> None:

@@ -10,7 +10,7 @@ import tendonlab as tl
 from examples import with_effect
 from tendonlab.diagnosis.answer.where import dimension
 from tendonlab.fitting.priors import scales
-from tendonlab.simulation.catalog import Parameter, SystemInfo, parameter_unit, unit
+from tendonlab.simulation.catalog import ParameterInfo, SystemInfo, parameter_unit, unit
 from tendonlab.simulation.prepare import Replay, prepare
 
 CARRIED = [
@@ -20,7 +20,7 @@ CARRIED = [
 
 
 @pytest.mark.parametrize(("info", "p"), CARRIED, ids=[f"{info.kind}:{p.name}" for info, p in CARRIED])
-def test_under_an_effort_it_is_a_ratio_of_at_most_one(info: SystemInfo, p: Parameter) -> None:
+def test_under_an_effort_it_is_a_ratio_of_at_most_one(info: SystemInfo, p: ParameterInfo) -> None:
     assert (p.dimension, parameter_unit(info, p, "rotary"), parameter_unit(info, p, "linear")) == ("ratio", "1", "1")
     assert (p.lower, p.upper) == (0.0, 1.0)
 

@@ -7,6 +7,7 @@ namespace tendonlab::bindings {
 namespace py = pybind11;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+void bind_tables(py::module_& module);
 void bind_laws(py::module_& module);
 void bind_pair(py::module_& module);
 void bind_systems(py::module_& module);

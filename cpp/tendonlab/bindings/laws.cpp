@@ -14,8 +14,8 @@
 namespace tendonlab::bindings {
 namespace {
 std::string both_units(Dimension dimension) {
-  const DimensionWords& u = words(dimension);
-  return u.rotary == std::string_view(u.linear) ? u.rotary : sentence(u.rotary, " or ", u.linear);
+  const DimensionInfo& of = facts(dimension);
+  return of.rotary == of.linear ? std::string(of.rotary) : sentence(of.rotary, " or ", of.linear);
 }
 
 std::string pascal_case(std::string_view name) {
@@ -227,8 +227,8 @@ py::tuple table() {
   const py::object read_only = py::module_::import("types").attr("MappingProxyType");
   py::list rows;
   for_each_parameter<L>([&](const auto& p) {
-    rows.append(read_only(py::dict(arg("name") = std::string(p.name), arg("dimension") = words(p.dimension).name,
-                                   arg("purpose") = word(p.purpose), arg("typical") = p.typical, arg("lower") = p.lower,
+    rows.append(read_only(py::dict(arg("name") = std::string(p.name), arg("dimension") = p.dimension,
+                                   arg("purpose") = p.purpose, arg("typical") = p.typical, arg("lower") = p.lower,
                                    arg("upper") = p.upper, arg("meaning") = std::string(p.meaning))));
   });
   return py::tuple(rows);
@@ -292,14 +292,6 @@ void bind_laws(py::module_& module) {
   bind_group<loading::Every>(module, "loading", "Laws of what acts on the joint from outside.", registered);
   bind_group<actuation::Every>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
-  module.def(
-      "units",
-      [] {
-        py::dict all;
-        for (const DimensionWords& of : dimension_words) all[of.name] = py::make_tuple(of.rotary, of.linear);
-        return all;
-      },
-      "Unit of each dimension on a rotary and on a linear axis.");
   module.def(
       "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");
 }

@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
       raise("NumericalError", e.what());
     }
   });
+  tendonlab::bindings::bind_tables(module);
   tendonlab::bindings::bind_laws(module);
   tendonlab::bindings::bind_pair(module);
   tendonlab::bindings::bind_systems(module);

@@ -1,5 +1,4 @@
 #include "tendonlab/bindings/convert.hpp"
-#include "tendonlab/bindings/words.hpp"
 #include "tendonlab/core/error.hpp"
 
 namespace tendonlab::bindings {
@@ -7,44 +6,6 @@ namespace {
 using integrate::Experiment;
 using integrate::Loop;
 using integrate::Signal;
-
-py::dict signal_info(const SignalInfo& s) {
-  return py::dict(py::arg("name") = s.name, py::arg("meaning") = s.meaning,
-                  py::arg("dimension") = words(s.dimension).name, py::arg("required") = s.required,
-                  py::arg("axis") = s.axis, py::arg("between") = s.between, py::arg("unless") = s.unless,
-                  py::arg("missed") = s.missed);
-}
-py::dict parameter_info(const ParameterInfo& p) {
-  return py::dict(py::arg("name") = p.name, py::arg("element") = p.element, py::arg("effect") = p.effect,
-                  py::arg("own") = p.own, py::arg("dimension") = words(p.dimension).name,
-                  py::arg("purpose") = word(p.purpose), py::arg("typical") = p.typical, py::arg("lower") = p.lower,
-                  py::arg("upper") = p.upper, py::arg("meaning") = p.meaning);
-}
-py::dict effect_info(const EffectInfo& e) {
-  return py::dict(py::arg("name") = e.name, py::arg("element") = e.element, py::arg("effect") = e.effect,
-                  py::arg("noun") = e.noun, py::arg("phrase") = e.phrase, py::arg("equation") = e.equation,
-                  py::arg("source") = e.source, py::arg("summary") = e.summary, py::arg("parameters") = e.parameters,
-                  py::arg("needs") = e.needs, py::arg("roles") = e.roles, py::arg("structural") = e.structural);
-}
-template <class Items, class F>
-py::list listed(const Items& items, F make) {
-  py::list all;
-  for (const auto& item : items) all.append(make(item));
-  return all;
-}
-py::dict system_info(const std::string& kind) {
-  const SystemInfo& s = model(kind).info();
-  return py::dict(
-      py::arg("kind") = s.kind, py::arg("equation") = s.equation, py::arg("dof") = s.dof,
-      py::arg("inputs") = listed(s.inputs, signal_info), py::arg("outputs") = listed(s.outputs, signal_info),
-      py::arg("parameters") = listed(s.parameters, parameter_info), py::arg("effects") = listed(s.effects, effect_info),
-      py::arg("elements") =
-          listed(s.elements, [](const ElementInfo& e) { return py::make_tuple(e.name, e.axis, e.place); }),
-      py::arg("ports") =
-          listed(s.ports, [](const PortInfo& p) { return py::make_tuple(p.name, p.element, words(p.load).name); }),
-      py::arg("nominal") = s.nominal, py::arg("commanded") = s.commanded, py::arg("sampled") = s.sampled,
-      py::arg("steady") = s.steady);
-}
 
 Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
   const auto pieces = static_cast<std::size_t>(knots.size());
@@ -163,15 +124,6 @@ void bind_experiments(py::module_& module) {
 }  // namespace
 
 void bind_systems(py::module_& module) {
-  module.def(
-      "kinds",
-      [] {
-        std::vector<std::string> names;
-        for (const auto& m : models()) names.push_back(m->info().kind);
-        return names;
-      },
-      "Names of all systems.");
-  module.def("system_info", &system_info, py::arg("kind"), "Everything a system states about itself, as plain types.");
   module.def(
       "rigid_motion",
       [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active) {

@@ -1,48 +1,52 @@
 #pragma once
-// How dimensions and purposes are called outside, and in what units: the one place that says so.
+// Enumerations are words in Python: "effort", "amplitude", "hold".
+#include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/core/parameter.hpp"
+#include "tendonlab/systems/signals.hpp"
 
-namespace tendonlab::bindings {
-struct DimensionWords {
-  const char *name, *rotary, *linear;
+namespace tendonlab {
+constexpr const char* word(Dimension dimension) {
+  return dimension < Dimension::count ? facts(dimension).name.data() : nullptr;
+}
+constexpr const char* word(Scale scale) {
+  switch (scale) {
+    case Scale::one:
+      return "one";
+    case Scale::effort:
+      return "effort";
+    case Scale::flow:
+      return "flow";
+    case Scale::displacement:
+      return "displacement";
+  }
+  return nullptr;
+}
+}  // namespace tendonlab
+
+namespace pybind11::detail {
+/// An enumeration whose values count from 0 and have a `word` each.
+template <class Enum>
+struct word_caster {
+  PYBIND11_TYPE_CASTER(Enum, const_name("str"));
+  bool load(handle source, bool) {
+    if (!isinstance<str>(source)) return false;
+    const auto text = source.cast<std::string>();
+    for (int i = 0;; ++i) {
+      value = static_cast<Enum>(i);
+      const char* known = word(value);
+      if (known == nullptr || text == known) return known != nullptr;
+    }
+  }
+  static handle cast(Enum of, return_value_policy, handle) { return str(word(of)).release(); }
 };
-/// In the order of `Dimension`. Unless a dataset says otherwise the command is the effort itself.
-inline constexpr DimensionWords dimension_words[] = {{"effort", "N*m", "N"},
-                                                     {"flow", "rad/s", "m/s"},
-                                                     {"displacement", "rad", "m"},
-                                                     {"inertia", "kg*m^2", "kg"},
-                                                     {"damping", "N*m*s/rad", "N*s/m"},
-                                                     {"stiffness", "N*m/rad", "N/m"},
-                                                     {"ratio", "1", "1"},
-                                                     {"time", "s", "s"},
-                                                     {"command", "N*m", "N"},
-                                                     {"effort_per_command", "N*m", "N"},
-                                                     {"output", "unit of its signal", "unit of its signal"},
-                                                     {"force", "N", "N"},
-                                                     {"length", "m", "m"},
-                                                     {"speed", "m/s", "m/s"},
-                                                     {"line_stiffness", "N/m", "N/m"},
-                                                     {"line_damping", "N*s/m", "N*s/m"},
-                                                     {"mass", "kg", "kg"},
-                                                     {"angle", "rad", "rad"},
-                                                     {"angular_speed", "rad/s", "rad/s"},
-                                                     {"torque", "N*m", "N*m"},
-                                                     {"voltage", "V", "V"},
-                                                     {"current", "A", "A"},
-                                                     {"resistance", "ohm", "ohm"},
-                                                     {"inductance", "H", "H"},
-                                                     {"torque_per_current", "N*m/A", "N*m/A"},
-                                                     {"acceleration", "m/s^2", "m/s^2"},
-                                                     {"line_compliance", "m/N", "m/N"},
-                                                     {"per_flow_squared", "s^2/rad^2", "s^2/m^2"},
-                                                     {"inverse_flow", "s/rad", "s/m"},
-                                                     {"effort_per_load", "1", "1"}};
-inline constexpr const char* purpose_words[] = {"structure", "amplitude", "share", "shape", "condition"};
-
-inline const DimensionWords& words(Dimension dimension) {
-  return dimension_words[static_cast<int>(dimension)];
-}
-inline const char* word(Purpose purpose) {
-  return purpose_words[static_cast<int>(purpose)];
-}
-}  // namespace tendonlab::bindings
+template <>
+struct type_caster<tendonlab::Dimension> : word_caster<tendonlab::Dimension> {};
+template <>
+struct type_caster<tendonlab::Scale> : word_caster<tendonlab::Scale> {};
+template <>
+struct type_caster<tendonlab::Purpose> : word_caster<tendonlab::Purpose> {};
+template <>
+struct type_caster<tendonlab::ParameterRole> : word_caster<tendonlab::ParameterRole> {};
+template <>
+struct type_caster<tendonlab::systems::Between> : word_caster<tendonlab::systems::Between> {};
+}  // namespace pybind11::detail

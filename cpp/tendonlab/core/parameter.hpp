@@ -4,46 +4,12 @@
 #include <string_view>
 #include <tuple>
 
+#include "tendonlab/core/dimension.hpp"
 #include "tendonlab/core/dual.hpp"
 
 namespace tendonlab {
 inline constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// Effort and flow are N·m and rad/s on a rotary axis, N and m/s on a linear one; those up to `stiffness` follow from
-/// them. The others mean the same on every axis. `effort_per_load` is what a law loses per load that its port sees: a
-/// ratio, but an effort without upper bound where that load is itself a ratio (systems::Port::load).
-enum class Dimension {
-  effort,
-  flow,
-  displacement,
-  inertia,
-  damping,
-  stiffness,
-  ratio,
-  time,
-  command,
-  effort_per_command,
-  output,
-  force,
-  length,
-  speed,
-  line_stiffness,
-  line_damping,
-  mass,
-  angle,
-  angular_speed,
-  torque,
-  voltage,
-  current,
-  resistance,
-  inductance,
-  torque_per_current,
-  acceleration,
-  line_compliance,
-  per_flow_squared,
-  inverse_flow,
-  effort_per_load
-};
 enum class Purpose {
   structure,  ///< of the system itself
   amplitude,  ///< the effect vanishes where it is 0; fitted
@@ -51,6 +17,38 @@ enum class Purpose {
   shape,      ///< has no meaning while the amplitude is 0; fitted
   condition   ///< of the experiment, which states it; `typical` where none does; never fitted
 };
+constexpr const char* word(Purpose purpose) {
+  switch (purpose) {
+    case Purpose::structure:
+      return "structure";
+    case Purpose::amplitude:
+      return "amplitude";
+    case Purpose::share:
+      return "share";
+    case Purpose::shape:
+      return "shape";
+    case Purpose::condition:
+      return "condition";
+  }
+  return nullptr;
+}
+/// What a parameter is to every system that has one, whatever the system calls it.
+enum class ParameterRole {
+  none,
+  command_gain,  ///< effort per unit of the command
+  payload        ///< largest effort of gravity on the joint, which a load that the joint carries adds to
+};
+constexpr const char* word(ParameterRole role) {
+  switch (role) {
+    case ParameterRole::none:
+      return "none";
+    case ParameterRole::command_gain:
+      return "command_gain";
+    case ParameterRole::payload:
+      return "payload";
+  }
+  return nullptr;
+}
 
 /// `typical` is in units of the rig's own scale of that dimension (its rms effort, speed, travel), or absolute for a
 /// ratio or a time: it starts fits and sets the width of priors.
@@ -62,12 +60,13 @@ struct Parameter {
   Purpose purpose;
   double typical, lower, upper;
   std::string_view meaning;
+  ParameterRole role;
 };
 template <class Owner, class Field>
 constexpr Parameter<Owner, Field> parameter(Field Owner::*field, std::string_view name, Dimension dimension,
                                             Purpose purpose, double typical, double lower, double upper,
-                                            std::string_view meaning) {
-  return {field, name, dimension, purpose, typical, lower, upper, meaning};
+                                            std::string_view meaning, ParameterRole role = ParameterRole::none) {
+  return {field, name, dimension, purpose, typical, lower, upper, meaning, role};
 }
 /// Visits the parameters of `Owner` in the order of its table.
 template <class Owner, class F>

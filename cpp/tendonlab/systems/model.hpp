@@ -6,12 +6,14 @@
 
 #include "tendonlab/core/parameter.hpp"
 #include "tendonlab/integrate/experiment.hpp"
+#include "tendonlab/systems/signals.hpp"
 
 namespace tendonlab {
 struct ParameterInfo {
   std::string name, element, effect, own;
   Dimension dimension;
   Purpose purpose;
+  ParameterRole role;
   double typical, lower, upper;
   std::string meaning;
 };
@@ -24,17 +26,10 @@ struct EffectInfo {
   unsigned roles;
   bool structural;
 };
-struct SignalInfo {
-  std::string name, meaning;
-  Dimension dimension;
-  bool required;
-  int axis;
-  std::string between, unless;  ///< inputs only
-  bool missed;                  ///< inputs only
-};
-/// A place where laws sit, in words "at the joint"; `axis` is empty where it is the system's.
+/// A place where laws sit: its name, its axis (empty: the system's), in words ("at the joint"), and the element with
+/// ports whose motion and effort it shares: itself where it has ports.
 struct ElementInfo {
-  std::string name, axis, place;
+  std::string name, axis, place, acts_on;
 };
 struct PortInfo {
   std::string name, element;
@@ -43,7 +38,8 @@ struct PortInfo {
 struct SystemInfo {
   std::string kind, equation;
   int dof;
-  std::vector<SignalInfo> inputs, outputs;
+  std::vector<systems::Input> inputs;
+  std::vector<systems::Output> outputs;
   std::vector<ParameterInfo> parameters;
   std::vector<EffectInfo> effects;
   std::vector<ElementInfo> elements;

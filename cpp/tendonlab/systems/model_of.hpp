@@ -10,9 +10,6 @@
 
 namespace tendonlab {
 namespace systems {
-inline std::string word(Between b) {
-  return b == Between::hold ? "hold" : b == Between::linear ? "linear" : "smooth";
-}
 template <class System>
 std::string axis_of(const std::string& element) {
   for (const auto& port : System::ports)
@@ -59,7 +56,8 @@ class Describe {
     System system{};
     systems::for_each_place(system, [&](auto& laws, unsigned) {
       const std::string& element = *name++;
-      one.info.elements.push_back({element, systems::axis_of<System>(element), systems::place_words<System>(element)});
+      one.info.elements.push_back({element, systems::axis_of<System>(element), systems::place_words<System>(element),
+                                   systems::acts_on<System>(element)});
       std::apply([&](auto&... law) { (one.add_law(element, law), ...); }, laws);
     });
     return one.made;
@@ -70,11 +68,8 @@ class Describe {
     info.kind = System::name, info.equation = System::equation, info.dof = systems::stated<System>;
     info.commanded = System::commanded, info.sampled = System::sampled;
     if constexpr (System::sampled) info.steady = integrate::memories<System> == 0 && System::carried == 0;
-    for (const auto& s : System::inputs)
-      info.inputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, s.is_required, -1,
-                             systems::word(s.between), std::string(s.replacement), s.warns_if_absent});
-    for (const auto& s : System::outputs)
-      info.outputs.push_back({std::string(s.name), std::string(s.meaning), s.dimension, true, s.axis, {}, {}, false});
+    info.inputs.assign(System::inputs.begin(), System::inputs.end());
+    info.outputs.assign(System::outputs.begin(), System::outputs.end());
     for (const auto& port : System::ports)
       info.ports.push_back({std::string(port.name), std::string(port.element), port.load});
     for (const auto& name : System::nominal) info.nominal.emplace_back(name);
@@ -87,7 +82,7 @@ class Describe {
     if (known) return;
     info.parameters.push_back(systems::under_load<System>(
         {systems::parameter_name<System>(of.element, of.law, p.name), of.element, std::string(of.law),
-         std::string(p.name), p.dimension, p.purpose, p.typical, p.lower, p.upper, std::string(p.meaning)}));
+         std::string(p.name), p.dimension, p.purpose, p.role, p.typical, p.lower, p.upper, std::string(p.meaning)}));
   }
   template <class Law>
   void add_law(const std::string& element, const Law&) {

@@ -33,9 +33,10 @@ struct RigidJoint : SystemDefaults {
         parameter(&RigidJoint::inertia, "inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12, inf,
                   "inertia of everything that moves"),
         parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure, 0.0, -inf, inf,
-                  "gravity torque at 90 degrees"),
+                  "gravity torque at 90 degrees", ParameterRole::payload),
         parameter(&RigidJoint::torque_constant, "torque_constant", Dimension::effort_per_command, Purpose::structure,
-                  1.0, -inf, inf, "effort per unit of the command; known unless sd says otherwise")};
+                  1.0, -inf, inf, "effort per unit of the command; known unless sd says otherwise",
+                  ParameterRole::command_gain)};
   }
   void prepare() {
     inverse_inertia[0] = 1.0 / inertia;

@@ -9,6 +9,7 @@
 #include "tendonlab/loading/all.hpp"
 #include "tendonlab/sensing/all.hpp"
 #include "tendonlab/systems/places.hpp"
+#include "tendonlab/systems/signals.hpp"
 #include "tendonlab/transmission/all.hpp"
 
 namespace tendonlab::systems {
@@ -86,50 +87,6 @@ constexpr Port port(std::string_view element) {
   return {element, element};
 }
 
-/// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated.
-enum class Between { hold, linear, smooth };
-struct Input {
-  std::string_view name, meaning;
-  Dimension dimension;
-  Between between;
-  bool is_required = false;
-  std::string_view replacement = {};  ///< an input that takes the place of this one where it was logged
-  bool warns_if_absent = false;
-
-  constexpr Input required() const {
-    Input i = *this;
-    i.is_required = true;
-    return i;
-  }
-  constexpr Input replaced_by(std::string_view other) const {
-    Input i = *this;
-    i.replacement = other;
-    return i;
-  }
-  /// Where it was not logged although a measured output depends on it, users are warned that it is taken as 0.
-  constexpr Input warn_if_absent() const {
-    Input i = *this;
-    i.warns_if_absent = true;
-    return i;
-  }
-};
-constexpr Input input(std::string_view name, Dimension dimension, Between between, std::string_view meaning) {
-  return {name, meaning, dimension, between};
-}
-struct Output {
-  std::string_view name, meaning;
-  Dimension dimension;
-  int axis = -1;  ///< the degree of freedom whose position it is, -1 for anything else
-
-  constexpr Output position_of(int degree_of_freedom) const {
-    Output o = *this;
-    o.axis = degree_of_freedom;
-    return o;
-  }
-};
-constexpr Output output(std::string_view name, Dimension dimension, std::string_view meaning) {
-  return {name, meaning, dimension};
-}
 /// The public name of a parameter where it is not made by the rule: {effect, own name, public name}.
 struct Renamed {
   std::string_view effect, own, name;

@@ -47,7 +47,7 @@ struct TwoInertia : SystemDefaults {
                       parameter(&TwoInertia::gear_ratio, "gear_ratio", Dimension::ratio, Purpose::structure, 1.0, 1e-9,
                                 inf, "turns of the motor per turn of the joint"),
                       parameter(&TwoInertia::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
-                                0.0, -inf, inf, "gravity torque at 90 degrees")};
+                                0.0, -inf, inf, "gravity torque at 90 degrees", ParameterRole::payload)};
   }
   void prepare() {
     inverse_inertia = {1.0 / motor_inertia, 1.0 / joint_inertia};

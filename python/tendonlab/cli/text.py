@@ -15,7 +15,7 @@ from tendonlab.simulation.catalog import parameter_unit, unit
 if TYPE_CHECKING:
     from tendonlab.data import Experiment
     from tendonlab.identification.result import Identification
-    from tendonlab.simulation.catalog import Effect, SystemInfo
+    from tendonlab.simulation.catalog import EffectInfo, SystemInfo
     from tendonlab.simulation.trajectory import Trajectory
 
 WIDEST = 110  # columns: longer lines are hard to read, however wide the terminal
@@ -117,9 +117,10 @@ def system_text(info: SystemInfo, *, axis: str) -> str:
     """A system: equation, signals and parameters with their units, and what its simulator contains."""
     lines = [f"{info.kind}: units of a {axis} axis"]
     lines += [wrapped(part.strip(), indent="  ", hanging=" " * 6) for part in info.equation.split(";")]
+    optional = {s.name for s in info.inputs if not s.required}
     for title, signals in (("inputs", info.inputs), ("outputs", info.outputs)):
-        rows = [(s.name, unit(s.dimension, axis), s.meaning + ("" if s.required else ", optional")) for s in signals]
-        lines += [f"  {title}", *(_named(*row) for row in rows)]
+        rows = [(s.name, unit(s.dimension, axis), s.meaning, ", optional" * (s.name in optional)) for s in signals]
+        lines += [f"  {title}", *(_named(name, of, f"{meaning}{aside}") for name, of, meaning, aside in rows)]
     own = [info.parameter(name) for name in _nominal_parameters(info)]
     lines += ["  parameters", *(_named(row.name, parameter_unit(info, row, axis), row.meaning) for row in own)]
     nominal = listing(info.default_nominal_effects) or "no effect"
@@ -140,7 +141,7 @@ def effects_text(info: SystemInfo, *, axis: str) -> str:
     return "\n\n".join([heading, *(_effect_entry(info, effect, axis) for effect in optional)])
 
 
-def _effect_entry(info: SystemInfo, effect: Effect, axis: str) -> str:
+def _effect_entry(info: SystemInfo, effect: EffectInfo, axis: str) -> str:
     nominal = effect.name in info.default_nominal_effects
     lines = [
         f"  {effect.name}{'  (in the simulator unless the dataset says otherwise)' if nominal else ''}",

@@ -46,10 +46,10 @@ def load(path: str | PathLike[str]) -> Dataset:
     experiments = read_experiments(top, context)
     _require_motion(experiments, signals.values(), info=info, controller=controller)
     _require_moving_output(experiments, signals.values())
-    command = signals.get("motor_torque")
+    command = signals.get(info.command.name) if info.command is not None else None
     command_is_effort = command is None or command.si_unit == catalog.unit("effort", axis)
     warnings = [
-        *assumptions(top, parameters, experiments, command_is_effort=command_is_effort),
+        *assumptions(top, parameters, experiments, info, command_is_effort=command_is_effort),
         *_doubts(experiments, signals.values(), info=info),
         *_split_notes(experiments, given=split_is_given(top)),
     ]
@@ -79,7 +79,7 @@ def _require_motion(
     """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing."""
     required = [signal.name for signal in info.inputs if signal.required]
     if controller is not None:  # the replay computes the motor's command, from a reference that moves or is disturbed
-        required = [name for name in required if name != "motor_torque"]
+        required = [name for name in required if info.command is None or name != info.command.name]
         if controller.disturbance is None or _is_constant(experiments, controller.disturbance):
             required.append(controller.reference)
     for spec in signals:

@@ -22,7 +22,7 @@ def absent_inputs(dataset: Dataset) -> list[str]:
     """A warning for inputs that count as 0 although a measured output depends on them, directly or through an effect
     that may be added. Raises DatasetError for an output that depends on such inputs only."""
     system, logged = dataset.system(), set(dataset.inputs)
-    absent = [s.name for s in system.info.inputs if s.missed and s.name not in logged]
+    absent = [s.name for s in system.info.inputs if s.warn_if_absent and s.name not in logged]
     if not absent:
         return []
     try:

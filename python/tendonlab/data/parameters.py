@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 
 from tendonlab.data.schema import Table
 from tendonlab.errors import expected_one_of
-from tendonlab.simulation.catalog import Parameter, SystemInfo, kinds, system_info
+from tendonlab.simulation.catalog import ParameterInfo, SystemInfo, kinds, system_info
 from tendonlab.simulation.records import Experiment, NominalParameter
 
 
@@ -53,14 +53,16 @@ def assumptions(
     top: Table,
     parameters: Mapping[str, NominalParameter],
     experiments: Iterable[Experiment],
+    info: SystemInfo,
     *,
     command_is_effort: bool,
 ) -> list[str]:
-    """A warning for every parameter without a value in the file or in the conditions of every experiment; a
-    `torque_constant` of 1 goes without saying where the command is an effort."""
+    """A warning for every parameter without a value in the file or in the conditions of every experiment; none for a
+    gain of the command where the command is an effort."""
     written = set(top.table("system").table("parameters", optional=True).values)
     stated = set.intersection(*(set(experiment.conditions) for experiment in experiments))
-    silent = written | stated | ({"torque_constant"} if command_is_effort else set())
+    gain = info.with_role("command_gain")
+    silent = written | stated | ({gain.name} if gain is not None and command_is_effort else set())
     return [
         f"{name}: no nominal value given; {parameter.value:g} is assumed" + (", exactly" if parameter.sd == 0.0 else "")
         for name, parameter in parameters.items()
@@ -68,7 +70,7 @@ def assumptions(
     ]
 
 
-def find_parameter(table: Table, name: str, *, info: SystemInfo, nominal_effects: tuple[str, ...]) -> Parameter:
+def find_parameter(table: Table, name: str, *, info: SystemInfo, nominal_effects: tuple[str, ...]) -> ParameterInfo:
     """The parameter that the key `name` of `table` means. Raises DatasetError where it is unknown or not nominal."""
     usable = [p.name for p in info.parameters if _is_nominal(p, info, nominal_effects)]
     parameter = next((p for p in info.parameters if p.name == name), None)
@@ -86,7 +88,7 @@ def require_within(table: Table, key: str, value: float, *, lower: float, upper:
         raise table.error(key, f"{value:g} is outside its bounds; expected a value in [{lower:g}, {upper:g}]")
 
 
-def _read_parameter(table: Table, parameter: Parameter) -> NominalParameter:
+def _read_parameter(table: Table, parameter: ParameterInfo) -> NominalParameter:
     table.allow(("value", "sd", "min", "max"))
     value = table.number("value")
     sd = table.number("sd", lower=0.0) if "sd" in table.values else None
@@ -98,13 +100,13 @@ def _read_parameter(table: Table, parameter: Parameter) -> NominalParameter:
     return NominalParameter(value=value, sd=sd, lower=lower, upper=upper)
 
 
-def _assume(table: Table, parameter: Parameter, info: SystemInfo) -> NominalParameter:
+def _assume(table: Table, parameter: ParameterInfo, info: SystemInfo) -> NominalParameter:
     """What an absent value means: that part of the simulator is not there, or is as the table has it."""
     structural = {effect.name for effect in info.effects if effect.structural}
     own = parameter.effect is None or not structural.isdisjoint(_effects_with(parameter, info))
     counted = parameter.purpose == "shape" and parameter.dimension in ("ratio", "time")
     absolute = counted or parameter.purpose == "share"
-    if parameter.purpose == "condition" or (own and (parameter.typical == 0.0 or parameter.name == "torque_constant")):
+    if parameter.purpose == "condition" or (own and (parameter.typical == 0.0 or parameter.role == "command_gain")):
         value, known = parameter.typical, True
     elif not own and absolute:
         value, known = parameter.typical, parameter.purpose == "share"
@@ -115,11 +117,11 @@ def _assume(table: Table, parameter: Parameter, info: SystemInfo) -> NominalPara
     return NominalParameter(value=value, sd=0.0 if known else None, lower=parameter.lower, upper=parameter.upper)
 
 
-def _effects_with(parameter: Parameter, info: SystemInfo) -> list[str]:
+def _effects_with(parameter: ParameterInfo, info: SystemInfo) -> list[str]:
     return [effect.name for effect in info.effects if parameter.name in effect.parameters]
 
 
-def _is_nominal(parameter: Parameter, info: SystemInfo, nominal_effects: tuple[str, ...]) -> bool:
+def _is_nominal(parameter: ParameterInfo, info: SystemInfo, nominal_effects: tuple[str, ...]) -> bool:
     """Whether the simulator has it: of the system itself, or of an effect that it contains."""
     contained = {effect.name for effect in info.effects if effect.structural} | set(nominal_effects)
     return parameter.effect is None or not contained.isdisjoint(_effects_with(parameter, info))

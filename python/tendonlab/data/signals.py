@@ -3,7 +3,7 @@
 from tendonlab.data.schema import Table
 from tendonlab.data.units import COMMAND_UNITS, base_unit, convert_difference, require_dimension, same_dimension
 from tendonlab.errors import DatasetError, nearest_name
-from tendonlab.simulation.catalog import Signal, SystemInfo, unit
+from tendonlab.simulation.catalog import InputInfo, OutputInfo, SystemInfo, unit
 from tendonlab.simulation.records import Controller, SignalSpec
 
 KEYS = ("column", "unit", "hold", "noise_sd", "resolution")
@@ -67,7 +67,7 @@ def _role(name: str, info: SystemInfo, controller: Controller | None) -> str:
 
 def _holds(name: str, role: str, info: SystemInfo) -> bool:
     """The default: commands, targets and disturbances are held between samples, what is measured is not."""
-    held = {signal.name: signal.hold for signal in info.inputs}
+    held = {signal.name: signal.between == "hold" for signal in info.inputs}
     return held.get(name, role in ("reference", "disturbance"))
 
 
@@ -82,13 +82,13 @@ def _expected_unit(
     signal = _find(name, info)
     if signal is None:
         return None
-    return command if _is_command(signal) else unit(signal.dimension, axis)
+    return command if signal.dimension == "command" else unit(signal.dimension, axis)
 
 
 def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
-    """The unit in which the motor is commanded: a torque, or what `torque_constant` converts, kept as it is written."""
+    """The unit of the command: of an effort, or the written one where a gain of the command converts it."""
     effort = unit("effort", axis)
-    command = next((signal for signal in info.inputs if _is_command(signal)), None)
+    command = info.command
     if command is None or command.name not in tables.values:
         return effort
     table = tables.table(command.name)
@@ -97,20 +97,18 @@ def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
         if same_dimension(written, effort):
             return effort
         if any(same_dimension(written, allowed) for allowed in COMMAND_UNITS):
-            if any(parameter.name == "torque_constant" for parameter in info.parameters):
+            if info.with_role("command_gain") is not None:
                 return written
-            raise DatasetError(f"unit {written!r}: {info.kind} has no torque_constant; expected one like {effort!r}")
+            raise DatasetError(
+                f"unit {written!r}: no parameter of {info.kind} converts it; expected one like {effort!r}"
+            )
         require_dimension(written, effort)
     except DatasetError as error:
         raise table.error("unit", str(error)) from error
     return effort
 
 
-def _is_command(signal: Signal) -> bool:
-    return signal.dimension == "command" or signal.name == "motor_torque"
-
-
-def _find(name: str, info: SystemInfo) -> Signal | None:
+def _find(name: str, info: SystemInfo) -> InputInfo | OutputInfo | None:
     return next((signal for signal in (*info.inputs, *info.outputs) if signal.name == name), None)
 
 
@@ -126,7 +124,7 @@ def _require_own_columns(tables: Table, specs: dict[str, SignalSpec]) -> None:
 
 def _require_inputs(tables: Table, info: SystemInfo) -> None:
     for signal in info.inputs:
-        if signal.required and signal.name not in tables.values and signal.unless not in tables.values:
+        if signal.required and signal.name not in tables.values and signal.replaced_by not in tables.values:
             match = nearest_name(signal.name, tables.values)
             hint = f"; the file has {match!r}" if match is not None else ""
             raise tables.error(signal.name, f"is missing; expected this input, which {info.kind} requires{hint}")

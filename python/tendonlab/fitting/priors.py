@@ -12,7 +12,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.data import NominalParameter
 from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import Parameter
+from tendonlab.simulation.catalog import DIMENSIONS, ParameterInfo
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
@@ -29,15 +29,12 @@ class Scale:
     displacement: float
 
     def of(self, dimension: str) -> float:
-        """One of this dimension; 1 for ratios and times."""
-        return {
-            "effort": self.effort,
-            "flow": self.flow,
-            "displacement": self.displacement,
-            "stiffness": self.effort / self.displacement,
-            "damping": self.effort / self.flow,
-            "output": self.displacement,
-        }.get(dimension, 1.0)
+        """The unit in which a typical value of this dimension counts, SI."""
+        scale, per = DIMENSIONS[dimension].scale, DIMENSIONS[dimension].per
+        return self._one(scale) / self._one(per)
+
+    def _one(self, scale: str | None) -> float:
+        return 1.0 if scale is None else float(getattr(self, scale))
 
 
 @dataclass(frozen=True)
@@ -110,8 +107,7 @@ def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
         measured = np.concatenate([e.measured[c] for e in experiments])
         spread = float(np.nanstd(measured)) if np.isfinite(measured).any() else 1.0
         found[f"sensor.{output.name}"] = Scale(first.effort, first.flow, _positive(spread))
-    # elements without a port act on one: the actuation on the first, the load on the joint
-    return {**dict.fromkeys(info.elements, first), "load": found.get("joint", first), **found}
+    return {element.name: found.get(element.name, found[element.acts_on]) for element in info.elements}
 
 
 def free_parameters(
@@ -147,14 +143,14 @@ def start_of(system: System, effect: str, of: Mapping[str, Scale]) -> dict[str, 
     return values
 
 
-def _known_by_default(p: Parameter, value: float) -> bool:
+def _known_by_default(p: ParameterInfo, value: float) -> bool:
     """A torque constant or gear ratio without `sd` is taken at its word: only the torques' ratio to it can be seen. So
     is 0 for what is usually not there."""
     usual = p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
     return usual or (value == 0.0 and p.typical == 0.0)
 
 
-def _nominal_parameter(index: int, p: Parameter, stated: NominalParameter, scale: float) -> Free:
+def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, scale: float) -> Free:
     lower, upper = max(p.lower, stated.lower), min(p.upper, stated.upper)
     if p.lower >= 0 and stated.value > 0:
         default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
@@ -167,7 +163,7 @@ def _nominal_parameter(index: int, p: Parameter, stated: NominalParameter, scale
     return Free(p.name, index, False, stated.sd, stated.value, stated.value / stated.sd, 1.0, lower, upper)
 
 
-def _effect_parameter(index: int, p: Parameter, scale: float, value: float) -> Free:
+def _effect_parameter(index: int, p: ParameterInfo, scale: float, value: float) -> Free:
     if p.purpose == "shape":
         return Free(p.name, index, True, scale, value, 0.0, SHAPE_LOG_SD, p.lower, p.upper)
     return Free(p.name, index, False, scale, value, 0.0, AMPLITUDE_SD, p.lower, p.upper)

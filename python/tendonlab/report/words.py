@@ -36,7 +36,7 @@ def words(name: str) -> str:
 def element_words(element: str, kind: str, *, article: bool = False) -> str:
     """The noun of an element of the system `kind`: "contact" of a two_inertia is "pulley contact", with its article
     "the pulley contact"."""
-    places = system_info(kind).places if kind in kinds() else {}
+    places = {row.name: row.place for row in system_info(kind).elements} if kind in kinds() else {}
     place = places.get(element, f"in the {words(element)}")
     noun = place.partition(" ")[2]
     return noun if article else noun.removeprefix("the ")

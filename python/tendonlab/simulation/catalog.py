@@ -1,121 +1,70 @@
-"""What systems, effects and parameters there are: the tables of the compiled core, as plain Python."""
+"""What systems, effects and parameters there are: the tables of the compiled core, and look-ups in them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
+from html import escape
 from typing import TypeVar
 
 from tendonlab import _core
+from tendonlab._core import EffectInfo, ElementInfo, InputInfo, OutputInfo, ParameterInfo, PortInfo
 from tendonlab.errors import ParameterError, expected_one_of
+
+__all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInfo", "PortInfo", "SystemInfo"]
 
 AXES = ("rotary", "linear")
 LEVEL, MEMORY, REFINES, WHOLE = 2, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
-UNITS = _core.units()
+DIMENSIONS = _core.dimensions()
+Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)
 
 
-@dataclass(frozen=True)
-class Parameter:
-    """A row of a law's or system's table. `typical` is in units of the rig's own scale of that dimension (its rms
-    effort, speed, travel), absolute for ratios and times. `purpose`: "structure", "amplitude", "share",
-    "shape" or "condition" (each experiment states it)."""
+class SystemInfo(_core.SystemInfo):
+    """Everything that a system states about itself: signals, parameters, effects, and the places of laws."""
 
-    name: str
-    element: str | None
-    effect: str | None
-    own: str
-    dimension: str
-    purpose: str
-    typical: float
-    lower: float
-    upper: float
-    meaning: str
+    def __init__(self, kind: str) -> None:
+        super().__init__(kind)
+        self._parameters = {row.name: row for row in self.parameters}
+        self._effects = {row.name: row for row in self.effects}
+        self._elements = {row.name: row for row in self.elements}
+
+    def parameter(self, name: str) -> ParameterInfo:
+        """The row of that name; ParameterError, with the nearest name, where there is none."""
+        return _named(self._parameters, name, f"parameter of {self.kind}")
+
+    def effect(self, name: str) -> EffectInfo:
+        """The effect of that name; ParameterError, with the nearest name, where there is none."""
+        return _named(self._effects, name, f"effect of {self.kind}")
+
+    def element(self, name: str) -> ElementInfo:
+        """The element of that name; ParameterError, with the nearest name, where there is none."""
+        return _named(self._elements, name, f"element of {self.kind}")
+
+    def with_role(self, role: str) -> ParameterInfo | None:
+        """The parameter in that role, "command_gain" or "payload"; None where the system has none."""
+        return next((p for p in self.parameters if p.role == role), None)
 
     @property
-    def amplitude(self) -> bool:
-        """Does the effect vanish where this is 0?"""
-        return self.purpose in ("amplitude", "share")
+    def command(self) -> InputInfo | None:
+        """The command of the actuator, where it is an effort or what `command_gain` converts to one."""
+        return next((signal for signal in self.inputs if signal.dimension == "command"), None)
 
+    def __reduce__(self) -> tuple[object, tuple[str]]:
+        return system_info, (self.kind,)
 
-@dataclass(frozen=True)
-class Effect:
-    """A law in a place, "joint:stribeck". `phrase`: what reports call it, "Stribeck friction at the joint"; `noun`: the
-    same without the place. `structural` ones are part of the system and always on; `needs`: effects whose parameters it
-    shares."""
+    def __repr__(self) -> str:
+        inputs, outputs = (", ".join(s.name for s in signals) for signals in (self.inputs, self.outputs))
+        return f"SystemInfo({self.kind}: {inputs} -> {outputs}; {len(self.effects)} effects)"
 
-    name: str
-    element: str
-    effect: str
-    noun: str
-    phrase: str
-    equation: str
-    source: str
-    summary: str
-    parameters: tuple[str, ...]
-    needs: tuple[str, ...]
-    structural: bool
-    roles: int
-
-
-Named = TypeVar("Named", Parameter, Effect)
-
-
-@dataclass(frozen=True)
-class Signal:
-    """An input or output; `axis` is the degree of freedom whose position it is, None for anything else. `between`: what
-    an input is between its samples, "hold", "linear" or "smooth"; `unless`: an input that takes its place if logged;
-    `missed`: one that a rig may lack, but not where a measured output depends on it."""
-
-    name: str
-    dimension: str
-    required: bool
-    hold: bool
-    meaning: str
-    axis: int | None
-    between: str
-    unless: str | None
-    missed: bool
-
-
-@dataclass(frozen=True)
-class Port:
-    """Where a slot sits; ports of one element carry the same laws. `load`: dimension of what it sees as its load."""
-
-    name: str
-    element: str
-    load: str
-
-
-@dataclass(frozen=True)
-class SystemInfo:
-    """Everything a system states about itself. `commanded`: input 0 is the command of an actuator; `sampled`: outputs
-    follow sample by sample, without a differential equation; `steady`: and no sample depends on another, so that rows
-    need no time; `element_axes`: of elements with an axis of their own; `places`: each
-    element in words, "at the joint"."""
-
-    kind: str
-    equation: str
-    dof: int
-    inputs: tuple[Signal, ...]
-    outputs: tuple[Signal, ...]
-    parameters: tuple[Parameter, ...]
-    effects: tuple[Effect, ...]
-    elements: tuple[str, ...]
-    element_axes: dict[str, str]
-    places: dict[str, str]
-    ports: tuple[Port, ...]
-    default_nominal_effects: tuple[str, ...]
-    commanded: bool
-    sampled: bool
-    steady: bool
-
-    def parameter(self, name: str) -> Parameter:
-        """The row of that name; ParameterError, with the nearest name, where there is none."""
-        return _named(self.parameters, name, f"parameter of {self.kind}")
-
-    def effect(self, name: str) -> Effect:
-        """The effect of that name; ParameterError, with the nearest name, where there is none."""
-        return _named(self.effects, name, f"effect of {self.kind}")
+    def _repr_html_(self) -> str:
+        signals = [("input", s.name, unit(s.dimension, "rotary"), s.meaning) for s in self.inputs]
+        signals += [("output", s.name, unit(s.dimension, "rotary"), s.meaning) for s in self.outputs]
+        own = [p for p in self.parameters if p.effect is None]
+        rows = [("parameter", p.name, parameter_unit(self, p, "rotary"), p.meaning) for p in own]
+        rows += [("effect", e.name, "", e.summary) for e in self.effects]
+        cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in (*signals, *rows))
+        lines = "".join(f"<tr>{row}</tr>" for row in cells)
+        head = "<tr><th></th><th>name</th><th>unit (rotary axis)</th><th>meaning</th></tr>"
+        return f"<p><b>{self.kind}</b>: {escape(self.equation)}</p><table>{head}{lines}</table>"
 
 
 def kinds() -> tuple[str, ...]:
@@ -128,76 +77,30 @@ def system_info(kind: str) -> SystemInfo:
     """The tables of the system `kind`; ParameterError names the nearest kind where there is none."""
     if kind not in kinds():
         raise ParameterError(f"system kind = {kind!r}: {expected_one_of(kind, kinds())}")
-    raw = _core.system_info(kind)
-    return SystemInfo(
-        kind=raw["kind"],
-        equation=raw["equation"],
-        dof=raw["dof"],
-        inputs=tuple(_signal(s) for s in raw["inputs"]),
-        outputs=tuple(_signal(s) for s in raw["outputs"]),
-        parameters=tuple(
-            Parameter(**{**p, "element": p["element"] or None, "effect": p["effect"] or None})
-            for p in raw["parameters"]
-        ),
-        effects=tuple(
-            Effect(
-                **{
-                    "noun": e["effect"],
-                    "phrase": e["name"],
-                    **e,
-                    "parameters": tuple(e["parameters"]),
-                    "needs": tuple(e["needs"]),
-                }
-            )
-            for e in raw["effects"]
-        ),
-        elements=tuple(name for name, *_ in raw["elements"]),
-        element_axes={name: axis for name, axis, *_ in raw["elements"] if axis},
-        places={name: place for name, _, *of in raw["elements"] for place in of},
-        ports=tuple(Port(*of) for of in raw["ports"]),
-        default_nominal_effects=tuple(raw["nominal"]),
-        commanded=raw["commanded"],
-        sampled=raw["sampled"],
-        steady=raw["steady"],
-    )
+    return SystemInfo(kind)
 
 
 def unit(dimension: str, axis: str) -> str:
     """Unit of a dimension on a "rotary" or "linear" axis, e.g. unit("effort", "linear") = "N"."""
     if axis not in AXES:
         raise ParameterError(f"axis = {axis!r}: expected one of {', '.join(AXES)}")
-    if dimension not in UNITS:
-        raise ParameterError(f"dimension = {dimension!r}: expected one of {', '.join(UNITS)}")
-    return UNITS[dimension][AXES.index(axis)]
+    if dimension not in DIMENSIONS:
+        raise ParameterError(f"dimension = {dimension!r}: expected one of {', '.join(DIMENSIONS)}")
+    return DIMENSIONS[dimension].rotary if axis == "rotary" else DIMENSIONS[dimension].linear
 
 
-def parameter_unit(info: SystemInfo, parameter: Parameter, axis: str) -> str:
+def parameter_unit(info: SystemInfo, parameter: ParameterInfo, axis: str) -> str:
     """Unit of a parameter of a system on `axis`, or of its element on an axis of its own; a sensor's bias has its
     signal's."""
+    if parameter.element is None:
+        return unit(parameter.dimension, axis)
     if parameter.dimension != "output":
-        return unit(parameter.dimension, info.element_axes.get(parameter.element or "", axis))
-    signal = (parameter.element or "").removeprefix("sensor.")
+        return unit(parameter.dimension, info.element(parameter.element).axis or axis)
+    signal = parameter.element.removeprefix("sensor.")
     return unit(next(s.dimension for s in info.outputs if s.name == signal), axis)
 
 
-def _signal(raw: dict[str, object]) -> Signal:
-    axis = raw["axis"]
-    dimension = str(raw["dimension"])
-    return Signal(
-        name=str(raw["name"]),
-        dimension=dimension,
-        required=bool(raw["required"]),
-        hold=raw["between"] == "hold",
-        meaning=str(raw["meaning"]),
-        axis=axis if isinstance(axis, int) and axis >= 0 else None,
-        between=str(raw["between"]),
-        unless=str(raw["unless"]) or None,
-        missed=bool(raw["missed"]),
-    )
-
-
-def _named(items: tuple[Named, ...], name: str, what: str) -> Named:
-    for item in items:
-        if item.name == name:
-            return item
-    raise ParameterError(f"{name!r} is no {what}; {expected_one_of(name, [i.name for i in items])}")
+def _named(rows: dict[str, Row], name: str, what: str) -> Row:
+    if name not in rows:
+        raise ParameterError(f"{name!r} is no {what}; {expected_one_of(name, rows)}")
+    return rows[name]

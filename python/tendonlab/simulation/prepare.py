@@ -126,10 +126,10 @@ def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_
     for k, given in enumerate(system.info.inputs):
         if given.name in data.columns:
             values = _finite(experiment, given.name)
-            held = experiment.holds.get(given.name, given.hold)
+            held = experiment.holds.get(given.name, given.between == "hold")
             between = hold if held else smoothed if given.between == "smooth" else linear
             signals.append(between(time, values))
-        elif given.required and given.unless not in data.columns and not (k == 0 and replay.kind == "controller"):
+        elif given.required and given.replaced_by not in data.columns and not (k == 0 and replay.kind == "controller"):
             raise DatasetError(
                 f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it"
             )

@@ -56,7 +56,7 @@ def _motion(case: Case, i: int, output: int) -> Motion:
     step = float(np.median(np.diff(time)))
     b, a = butter(4, 2 * CUTOFF * step)
     command = case.experiments[i].data[case.system.info.inputs[0].name].to_numpy(dtype=float)
-    effort = command * case.system.parameters.get("torque_constant", 1.0)
+    effort = command * _command_gain(case.system)
     recorded = pd.DataFrame({"position": case.prepared[i].measured[output], "effort": effort})
     whole = recorded.interpolate(limit_direction="both")
     position, effort = (filtfilt(b, a, whole[name].to_numpy()) for name in whole)
@@ -90,12 +90,18 @@ def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray
         for q, value in own.items()
     }
     if p.element == "actuation" and p.effect == "offset":
-        return np.full_like(velocity, -system.parameters.get("torque_constant", 1.0))
+        return np.full_like(velocity, -_command_gain(system))
     law = getattr(_core.friction, (p.effect or "").title().replace("_", ""), None)
     # Laws of other groups may bear the same name; the equation tells them apart.
     if law is None or law.equation != system.info.effect(f"{p.element}:{p.effect}").equation:
         return np.zeros_like(velocity)
     return np.asarray(law(**switched).force(velocity=velocity))
+
+
+def _command_gain(system: System) -> float:
+    """Effort per unit of the command."""
+    gain = system.info.with_role("command_gain")
+    return 1.0 if gain is None else system.parameters[gain.name]
 
 
 def _rms(x: np.ndarray) -> float:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tendonlab.fitting.case import Case
+from tendonlab.simulation.catalog import unit
+from tendonlab.simulation.system import System
 
 DURATION, RATE = 6.0, 250.0
 SEEN = 0.995  # quantile of logged speeds and accelerations that a rig is taken to manage
@@ -14,11 +16,17 @@ SEEN = 0.995  # quantile of logged speeds and accelerations that a rig is taken 
 
 @dataclass(frozen=True)
 class Motion:
-    """A position path of the looped axis at `RATE`, in words, with the payload that it is run with (gravity torque)."""
+    """A position path of the looped axis at `RATE`, in words. `payload`: effort of gravity at 90 degrees that a load
+    adds to the parameter in the role "payload", N·m or N."""
 
     words: str
     path: np.ndarray
     payload: float = 0.0
+
+    def payload_on(self, system: System) -> dict[str, float]:
+        """The parameters of `system` under the payload that differ from its own."""
+        row = system.info.with_role("payload")
+        return {} if row is None else {row.name: system.parameters[row.name] + self.payload}
 
 
 @dataclass(frozen=True)
@@ -43,11 +51,14 @@ def motions(case: Case, output: str) -> list[Motion]:
         _sweep(reach, place),
         _micro_motion(reach, place),
     ]
-    gravity = case.system.parameters.get("gravity_torque", 0.0)
+    row = case.system.info.with_role("payload")
+    gravity = 0.0 if row is None else case.system.parameters[row.name]
     if gravity != 0.0:
         heavier = 0.5 * abs(gravity)
         full = made[2]
-        made.append(Motion(f"{full.words}, with a payload of {heavier:.2g} N·m of gravity torque", full.path, heavier))
+        effort = unit("effort", case.system.axis).replace("*", "·")
+        words = f"{full.words}, with a load that adds {heavier:.2g} {effort} of gravity at 90 degrees"
+        made.append(Motion(words, full.path, heavier))
     return made
 
 

@@ -72,7 +72,7 @@ def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, seeds: list[tuple[s
     """A model driven along a motion by the loop, from rest."""
     system = of.system
     if motion.payload:
-        system = system.with_parameters({"gravity_torque": system.parameters["gravity_torque"] + motion.payload})
+        system = system.with_parameters(motion.payload_on(system))
     c = case.outputs.index(loop.output)
     axis = system.info.outputs[c].axis or 0
     shape, _, _ = _core.rigid_motion(system.kind, system.values(), system.active())

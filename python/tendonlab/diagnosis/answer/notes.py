@@ -94,7 +94,7 @@ def units(case: Case) -> dict[str, str]:
     info, axis = case.system.info, case.system.axis
     known = {s.name: unit(s.dimension, axis) for s in info.outputs}
     for port in info.ports:
-        own = info.element_axes.get(port.element, axis)
+        own = info.element(port.element).axis or axis
         known |= {f"{port.name}_{q}": unit(where.dimension(port, q), own) for q in where.COORDINATES}
     return known | {"time": "s"}
 

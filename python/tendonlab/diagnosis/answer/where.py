@@ -11,13 +11,13 @@ from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import WhereMap
-from tendonlab.simulation.catalog import Port, unit
+from tendonlab.simulation.catalog import PortInfo, unit
 
 NUM_BINS, NUM_SHIFTS = 8, 400
 COORDINATES = ("velocity", "position", "load")
 
 
-def dimension(port: Port, quantity: str) -> str:
+def dimension(port: PortInfo, quantity: str) -> str:
     """Dimension of one of the `COORDINATES` at a port."""
     return {"velocity": "flow", "position": "displacement", "load": port.load}[quantity]
 
@@ -45,8 +45,8 @@ def elements(probability: Mapping[str, float], case: Case) -> list[dict[str, Any
     """Probability that the cause sits in each element: that of its effects together."""
     rows = []
     for element in case.system.info.elements:
-        total = sum(p for name, p in probability.items() if name.rpartition(":")[0] == element)
-        rows.append({"element": element, "probability": float(min(1.0, total))})
+        total = sum(p for name, p in probability.items() if name.rpartition(":")[0] == element.name)
+        rows.append({"element": element.name, "probability": float(min(1.0, total))})
     return sorted(rows, key=lambda r: -float(r["probability"]))
 
 
@@ -122,7 +122,7 @@ def maps(
         x = records.coordinate(port.name, "velocity")
         quantity = "load" if np.ptp(records.coordinate(port.name, "load")) > 0 else "position"
         y = records.coordinate(port.name, quantity)
-        axis = case.system.info.element_axes.get(port.element, case.system.axis)
+        axis = case.system.info.element(port.element).axis or case.system.axis
         if np.ptp(x) == 0 or np.ptp(y) == 0:
             continue
         x_edges, y_edges = _edges(x), _edges(y)

@@ -15,7 +15,7 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
-from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, Effect, Parameter
+from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
@@ -48,7 +48,7 @@ def candidates(case: Case, base: Fitted) -> list[str]:
     info = case.system.info
     measured = {info.outputs[c].name for c in case.measured}
 
-    def applies(e: Effect) -> bool:
+    def applies(e: EffectInfo) -> bool:
         unmeasured = e.element.startswith("sensor.") and e.element.removeprefix("sensor.") not in measured
         present = e.name in base.system.effects
         return not (e.structural or e.roles & WHOLE or unmeasured or present) and _requirements_met(e, base)
@@ -56,7 +56,7 @@ def candidates(case: Case, base: Fitted) -> list[str]:
     return [e.name for e in info.effects if applies(e)]
 
 
-def _requirements_met(effect: Effect, base: Fitted) -> bool:
+def _requirements_met(effect: EffectInfo, base: Fitted) -> bool:
     """A refinement of dry friction (a bristle, the Stribeck excess) requires dry friction of its element; an effect
     that shares parameters with others requires those."""
     if not set(effect.needs) <= set(base.system.effects):
@@ -98,7 +98,7 @@ def _starts(scores: list[_Score], shape: list[str]) -> tuple[dict[str, float], .
 
 
 def _score(
-    fitter: Fitter, base: Fitted, effect: str, p: Parameter, shaped: dict[str, float], amplitude: float
+    fitter: Fitter, base: Fitted, effect: str, p: ParameterInfo, shaped: dict[str, float], amplitude: float
 ) -> _Score:
     unit = _unit(fitter.case, p)
     values = {**shaped, p.name: amplitude * unit}
@@ -115,7 +115,7 @@ def _score(
     return _Score(gain, {**values, p.name: start}, 0.5 * curvature)
 
 
-def _unit(case: Case, p: Parameter) -> float:
+def _unit(case: Case, p: ParameterInfo) -> float:
     """The typical size of an amplitude on this rig."""
     if p.purpose == "share":
         return 1.0
