@@ -12,7 +12,7 @@ from tendonlab.data.missing_inputs import absent_inputs
 from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
 from tendonlab.data.schema import FILE, read_toml
 from tendonlab.data.signals import read_signals
-from tendonlab.errors import DatasetError, nearest_name
+from tendonlab.errors import DatasetError, ParameterError, nearest_name
 from tendonlab.simulation import catalog
 from tendonlab.simulation.records import Controller, Experiment, SignalSpec
 
@@ -22,6 +22,8 @@ def load(path: str | PathLike[str]) -> Dataset:
 
     Raises DatasetError at the first violation of the format; it names file, key or column, row where there is one, and
     what was expected. Rows are the lines of a CSV file (the header is row 1), otherwise samples counted from 1."""
+    if not isinstance(path, str | PathLike):
+        raise ParameterError(f"path = {path!r:.60}: expected the folder of a dataset")
     folder = Path(path)
     folder = folder.parent if folder.name == FILE else folder
     top = read_toml(folder)

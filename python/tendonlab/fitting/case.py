@@ -15,7 +15,7 @@ from tendonlab.fitting.noise import sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
-from tendonlab.simulation.system import System
+from tendonlab.simulation.system import System, require_system
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
@@ -161,7 +161,7 @@ def make_case(
     default as `fine_enough` has it for the sensors' noise.
 
     Raises DatasetError where a signal that the replay needs was not logged."""
-    system = dataset.system() if system is None else system
+    system = dataset.system() if system is None else require_system(system)
     experiments = dataset.experiments if experiments is None else experiments
     replay = choose_replay(dataset, system)
     prepared = tuple(prepare(e, system, replay) for e in experiments)

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from tendonlab import _core
+from tendonlab.arguments import within
 from tendonlab.data import require_dataset
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
@@ -24,10 +25,10 @@ from tendonlab.identification.result import Identification
 from tendonlab.progress import track
 from tendonlab.seed import generator
 from tendonlab.simulation.catalog import unit
+from tendonlab.simulation.system import System, require_system
 
 if TYPE_CHECKING:
     from tendonlab.data import Dataset
-    from tendonlab.simulation.system import System
 
 __all__ = ["Identification", "identify"]
 
@@ -63,7 +64,8 @@ def identify(
     chosen = dataset.train if experiments is None else tuple(dataset[n] for n in _names("experiments", experiments))
     if not chosen:
         raise DatasetError(f"{dataset.name}: no training experiment; expected at least one with split = train")
-    base = dataset.system() if system is None else system
+    base = dataset.system() if system is None else require_system(system)
+    tolerance = None if tolerance is None else within("tolerance", tolerance, 1e-14, 0.1)
     case = make_case(dataset, base, experiments=[replace(e, split="train") for e in chosen], tolerance=tolerance)
     problem = _problem(case, effects)
     fit = _solve(_starts(problem, num_starts, generator(seed)), progress=progress)
@@ -73,6 +75,8 @@ def identify(
 def _names(what: str, given: Sequence[str]) -> tuple[str, ...]:
     if isinstance(given, str):
         raise ParameterError(f"{what} = {given!r}: expected a list, such as [{given!r}]")
+    if not isinstance(given, Sequence):
+        raise ParameterError(f"{what} = {given!r:.60}: expected a list of names")
     twice = [name for k, name in enumerate(given) if name in given[:k]]
     if twice:
         raise ParameterError(f"{what}: duplicate {twice[0]!r}; expected each name once")
