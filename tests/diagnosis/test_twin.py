@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tendonlab as tl
@@ -44,6 +45,19 @@ def test_the_gap_shrinks_as_it_does_for_one_who_knows_the_effect(
     for origin in ("from_nominal", "from_refitted"):
         found = twin_diagnosis.diagnosis.shrinkage[origin]["value"]
         assert found == pytest.approx(oracle.shrinkage[origin]["value"], abs=0.03)
+
+
+def test_the_overlay_shows_the_held_out_run_that_tuning_leaves_worst(twin_diagnosis: TwinDiagnosis) -> None:
+    """Its curves give its row of the table of held-out runs: sqrt(MSE - 1) over samples and outputs, in noise floors."""
+    found = twin_diagnosis.diagnosis
+    shown = found.overlay
+    assert shown is not None
+    assert shown.name == found.held_out["refitted"].idxmax()
+    for stage in ("nominal", "refitted", "with_effect"):
+        curves = getattr(shown, stage)
+        errors = [(shown.measured[name] - curves[name]) / shown.floor[name] for name in shown.measured]
+        gap = math.sqrt(max(0.0, np.nanmean(np.square(errors)) - 1.0))
+        assert gap == pytest.approx(found.held_out.loc[shown.name, stage], rel=1e-6)
 
 
 def test_probabilities_are_probabilities(twin_diagnosis: TwinDiagnosis) -> None:
