@@ -48,7 +48,7 @@ def test_the_gap_shrinks_as_it_does_for_one_who_knows_the_effect(
 
 
 def test_the_overlay_shows_the_held_out_run_that_tuning_leaves_worst(twin_diagnosis: TwinDiagnosis) -> None:
-    """Its curves give its row of the table of held-out runs: sqrt(MSE - 1) over samples and outputs, in noise floors."""
+    """Its curves give its row of the held-out gaps: sqrt(MSE - 1) over samples and outputs, in noise floors."""
     found = twin_diagnosis.diagnosis
     shown = found.overlay
     assert shown is not None
