@@ -23,7 +23,7 @@ D variable(const T& value, int k) {
   x.d[static_cast<std::size_t>(k)] = T(1.0);
   return x;
 }
-/// The parameter type below a Dual: what a law's parameters are made of.
+/// The type below a Dual: that of a law's parameters.
 template <class S>
 struct UnderOf {
   using type = S;

@@ -1,5 +1,5 @@
 #pragma once
-// The scalar `double` beside the derivative types: the same names for all of them, so that a law is one text.
+// The scalar `double`, with the same function names as the derivative types, so that a law is one text.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -7,7 +7,7 @@
 #define TENDONLAB_INLINE inline __attribute__((always_inline))
 
 namespace tendonlab {
-/// What control decisions are made of (step size, modes, error): derivatives are dropped there on purpose.
+/// The scalar of control decisions (step size, modes, error), which drop derivatives on purpose.
 template <class T>
 struct PlainOf {
   using type = T;
@@ -27,7 +27,7 @@ S square(const S& a) {
 inline double plain(double a) {
   return a;
 }
-/// Does anything that is differentiated move this?
+/// Is any derivative of this number not 0?
 inline bool varies(double) {
   return false;
 }

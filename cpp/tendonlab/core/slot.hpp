@@ -8,7 +8,8 @@ struct Response {
   S force{}, rate{};
 };
 
-/// The laws of one port. `active` has a bit a law: one that is off is not evaluated, so off means off, bit for bit.
+/// The laws of one port. `active` has one bit per law: a law that is off is not evaluated, so off means off, bit for
+/// bit.
 template <class T, class List>
 struct Slot {
   using Laws = typename List::template With<T>;

@@ -1,5 +1,5 @@
 #pragma once
-// When modes end: the margin that is positive while a mode holds, and what it is a function of.
+// When modes end: the margin of each mode is positive while the mode holds.
 #include "tendonlab/integrate/sticking.hpp"
 
 namespace tendonlab::integrate {

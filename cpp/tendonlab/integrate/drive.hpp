@@ -104,7 +104,7 @@ class Drive {
   void pass_known(double now) {
     for (std::size_t k = 1; k < from.inputs.size(); ++k) move(from.inputs[k], piece[k], 0.0, now);
   }
-  /// The same for whatever makes the command: its jumps move with its delay.
+  /// The same for the signals that make the command: their jumps move with its delay.
   void pass_command(double now) {
     if (logged()) move(from.inputs[0], piece[0], shift, now);
     move(from.loop.disturbance, disturbance_piece, shift, now);
@@ -133,14 +133,14 @@ class Drive {
     if (plain(u) < -loop.limit) u = T(-loop.limit);
     last_reading = y, last_reference = r;
     u = u + at_tick(loop.disturbance, ticked_disturbance, now);
-    if (first) held = u;  // before the record began the command was what it is at its first sample
+    if (first) held = u;  // before the record the command has its first value
     pending.push_back({tick_time(tick) + shift, u});
     ++tick;
     pass_command(now);
   }
   bool samples() const { return from.loop.kind == Loop::Kind::controller && from.loop.sample_time > 0; }
 
-  /// What the loop reads before the start: the initial state.
+  /// Before the start the loop reads the initial state.
   template <int n>
   void begin(const Motion<T, n>& at, double now) {
     if (!remembers) return;
@@ -148,7 +148,7 @@ class Drive {
     past.begin(at.position[axis], at.velocity[axis], now, samples());
     echo(now);
   }
-  /// The motion has a kink at `now`: a loop in continuous time sees it again later, and the stepper lands on that.
+  /// The motion has a kink at `now`. A late loop in continuous time passes it on later; the stepper lands there too.
   void echo(double now) {
     if (!remembers || samples() || lateness() <= Past<T>::shortest) return;
     past.split();
@@ -173,7 +173,7 @@ class Drive {
     double due;
     T value;
   };
-  /// A delay that is still 0 but differentiated needs the past too: its derivative is the slope of what it delays.
+  /// A delay of 0 that is differentiated needs the past too: its derivative is the slope of the delayed signal.
   static bool is_late(const T& delay) { return plain(delay) > 0 || varies(delay); }
   bool needs_past() const {
     return from.loop.kind == Loop::Kind::controller && (is_late(sensor_late) || (is_late(late) && !samples()));
@@ -184,7 +184,7 @@ class Drive {
   static void move(const Signal& s, int& i, double by, double now) {
     while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
   }
-  /// What the controller's clock sees of a signal: no delay has moved it.
+  /// A signal at a tick of the controller's clock, which no delay moves.
   static T at_tick(const Signal& s, int& i, double now) {
     if (s.holds && !s.empty()) i = s.locate(now, i);
     return s.value(T(now), i);

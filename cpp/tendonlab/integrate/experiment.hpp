@@ -1,5 +1,5 @@
 #pragma once
-// What a simulation is asked, and what it answers: plain data, the same for every system.
+// The input and the result of a simulation: plain data, the same for every system.
 #include <limits>
 #include <vector>
 
@@ -29,10 +29,11 @@ struct Experiment {
   std::vector<double> time;    ///< instants of the samples, s, increasing
   std::vector<Signal> inputs;  ///< in the order of the system's inputs; empty ones are zero
   Loop loop;
-  std::vector<double> position, velocity;  ///< initial state, a degree of freedom each
+  std::vector<double> position, velocity;  ///< initial state, one number per degree of freedom
 };
 
-/// What to differentiate by, beside the parameters: column k of the gradient is one derivative.
+/// A number by which outputs are differentiated: a parameter or part of the initial state. Seed k gives column k of the
+/// gradient.
 struct Seed {
   enum class Of { parameter, position, velocity } of = Of::parameter;
   int index = 0;

@@ -13,7 +13,7 @@ class Past {
   /// Delays below this, in s, are expanded about the present instead of bounding every step.
   static constexpr double shortest = 1e-4;
 
-  /// Before `now` everything was as it is now. `sampled`: whoever reads does so at instants that no step straddles.
+  /// Before `now` the state is constant. `sampled`: readings happen at instants that no step straddles.
   void begin(const T& position, const T& velocity, double now, bool sampled) {
     first_position = position, first_velocity = velocity, beginning = now;
     segment_read = sampled ? std::numeric_limits<int>::max() : -1;
@@ -28,7 +28,7 @@ class Past {
                       part([&](const auto& at) { return at.velocity[j]; })});
     while (pieces.size() > 1 && pieces.front().end < start - 2 * keep) pieces.pop_front();
   }
-  /// What follows lies beyond a kink of the motion.
+  /// Pieces added from now on lie beyond a kink of the motion.
   void split() { ++segment_written; }
   /// Readings have reached the next kink.
   void advance() { ++segment_read; }

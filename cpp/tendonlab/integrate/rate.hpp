@@ -1,5 +1,6 @@
 #pragma once
-// The rate of a system, from the one text of its laws, with what sticks held at rest.
+// The rate of a system, from the one text of its laws, with sticking ports held at rest. linearise.hpp states the same
+// equation of motion with its partials: values alone, in five of six stages, cost a fraction of that.
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::integrate {
@@ -53,7 +54,7 @@ struct Frame {
   bool holds = false;  ///< does any port stick?
   T keep[System::dof][System::dof];
 
-  /// What is left of accelerations once the sticking ports hold.
+  /// Accelerations after the sticking ports have taken their share.
   template <class Column>
   void project(Column&& column) const {
     constexpr int n = System::dof;
@@ -67,7 +68,7 @@ struct Frame {
   }
 };
 
-/// Who knows levers and inverse inertias: the system, or what it answered where its geometry moves.
+/// Levers and inverse inertias: of the system, or of its coupling where the geometry moves.
 template <class System, class Coupled>
 TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& coupled) {
   if constexpr (System::moving)

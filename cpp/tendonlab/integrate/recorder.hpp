@@ -5,7 +5,7 @@
 #include "tendonlab/integrate/simulation.hpp"
 
 namespace tendonlab::integrate {
-/// The ports at one instant, worked out when they are first asked for: most outputs do without.
+/// The ports at one instant, computed on first use: most outputs need none.
 template <class System, class T, class Inputs>
 class Instant {
   using F = Frame<System, T>;

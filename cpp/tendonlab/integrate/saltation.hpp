@@ -17,7 +17,7 @@ class Jump {
       if (!happens) return;
       before = rate(s.system, s.y, s.frame, s.drive);
       if (mode < 0)
-        moves = s.drive.late;  // the command is late by a parameter: so is its jump
+        moves = s.drive.late;  // the delay of the command is a parameter, which moves the jump
       else
         moves = of_guard(s, mode, toward);
     } else {

@@ -22,7 +22,7 @@ struct Signal {
     while (i > 0 && knots[static_cast<std::size_t>(i)] > time) --i;
     return i;
   }
-  /// Value at time `t`; smooth signals move `piece`, held ones stay on it: it is a mode of the step.
+  /// Value at time `t`. Smooth signals move `piece`; held ones keep it, as a mode of the step.
   template <class S>
   S value(const S& t, int& piece) const {
     if (empty()) return constant<S>(0.0);

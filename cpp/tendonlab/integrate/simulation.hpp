@@ -183,7 +183,7 @@ class Simulation {
     return at;
   }
 
-  /// Changes a mode at its root, and whatever follows from it at the same instant.
+  /// Changes a mode at its root, and all modes that follow from it at the same instant.
   void pass_event(const Crossing& at) {
     const Jump<System, T> jump(*this, at.mode, at.toward);
     turn(at);
@@ -229,7 +229,7 @@ class Simulation {
     drive.pass_known(t);  // at an instant that no parameter moves
     contact.settle(y, frame, {}, drive);
     const Jump<System, T> jump(*this, -1, 0.0);
-    const bool echoed = drive.hears_echo(t);  // an echo is smoother than what it echoes: it is not followed further
+    const bool echoed = drive.hears_echo(t);  // an echo is smoother than its kink and is not passed on
     drive.pass_command(t);
     if (!echoed) drive.echo(t);
     drive.sample(y.at, t);
@@ -245,7 +245,7 @@ class Simulation {
     const auto axis = static_cast<std::size_t>(drive.from.loop.axis);
     drive.past.arrive(rate(system, y, frame, drive).acceleration[axis], t, continues);
   }
-  /// The scale of each memory follows the friction level it stands for.
+  /// The scale of each memory follows the friction level that the memory replaces.
   void refresh() {
     if (!remembers) return;
     const auto c = couple(system, y.at, frame.mode, drive);

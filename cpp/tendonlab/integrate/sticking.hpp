@@ -29,7 +29,7 @@ class Sticking : public ModeTable<System, T> {
     for (int a = 0; a < count; ++a) remove(frame, geometry, representative[stuck[a]]);
   }
 
-  /// Efforts that hold the sticking ports at rest, one a mode (0 where it slides): positive pushes backwards.
+  /// Efforts that hold the sticking ports at rest, one per mode (0 where it slides): positive pushes backwards.
   template <class Inputs>
   std::array<T, directions> holding(const Y& y, const F& frame, const Inputs& in) const {
     F free = frame;

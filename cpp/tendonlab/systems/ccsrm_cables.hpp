@@ -13,7 +13,7 @@ inline constexpr std::array contact_ports{contact_port.named("contact_11"), cont
 ///   T_12 = T_p - k r (theta_2 - theta_1),  T_22 = T_p + k r (theta_2 - theta_1)               middle sections
 ///   T_11 = T_12 - f_11,  T_13 = T_12 - f_12,  T_21 = T_22 - f_21,  T_23 = T_22 - f_22         end sections
 /// Slip v is positive towards the middle section, so f opposes it: v = r (-theta_1', theta_2', theta_1', -theta_2')
-/// while the end sections do not stretch. What all systems of these cables share stands here.
+/// while the end sections do not stretch. All systems of these cables inherit from this.
 template <class T>
 struct CcsrmCables : SystemDefaults {
   static constexpr std::array sections{output("tension_11", Dimension::force, "tension of cable 1 beyond pulley 1"),

@@ -12,7 +12,7 @@ constexpr std::array<Port, 10> ccsrm_ports(const std::array<Port, 4>& contact) {
 
 /// Two joints that two S-shaped cables couple to turn by equal angles over two pulleys (S4). Joint 2 is driven:
 ///   J theta_1'' = r (T_21 - T_11) - friction
-/// What is the same whether the end sections stretch or not stands here.
+/// The part that does not depend on whether the end sections stretch.
 template <class T>
 struct CcsrmTables : CcsrmCables<T> {
   static constexpr std::string_view name = "ccsrm",

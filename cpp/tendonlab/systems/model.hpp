@@ -49,7 +49,7 @@ struct SystemInfo {
   bool steady;  ///< sampled, and no sample depends on another: its rows need no time
 };
 
-/// A system with numbers in it: one value a parameter, one flag an effect, in the order of `SystemInfo`.
+/// A system with numbers in it: one value per parameter, one flag per effect, in the order of `SystemInfo`.
 struct Configuration {
   std::vector<double> values;
   std::vector<bool> active;
@@ -67,7 +67,7 @@ class Model {
   virtual ~Model() = default;
   virtual const SystemInfo& info() const = 0;
   virtual RigidMotion rigid_motion(const Configuration& with) const = 0;
-  /// Simulates `experiment`; the gradient has a column a seed. Throws NumericalError where the integration fails.
+  /// Simulates `experiment`; the gradient has one column per seed. Throws NumericalError where the integration fails.
   virtual integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
                                          const std::vector<integrate::Seed>& seeds,
                                          const integrate::Settings& settings) const = 0;

@@ -28,7 +28,7 @@ ParameterInfo under_load(ParameterInfo p) {
   p.dimension = Dimension::ratio;
   return p;
 }
-/// Where the parameter stands that `holder` calls `own`, if it is there already.
+/// The index of the parameter that `holder` calls `own`, if it has been listed.
 inline std::optional<std::size_t> place_of(const std::vector<ParameterInfo>& parameters, const Holder& holder,
                                            std::string_view own) {
   for (std::size_t i = 0; i < parameters.size(); ++i)
@@ -246,7 +246,7 @@ class ModelOf final : public Model {
   const Description description = Describe<Of<double>>::all();
 };
 
-/// The model of a system. Each is compiled once, in a file of its own; whoever lists or joins systems asks for it here.
+/// The model of a system. Each is compiled once, in a file of its own; the list of systems and joined systems call it.
 template <template <class> class Of>
 std::unique_ptr<Model> make_model();
 
