@@ -84,10 +84,10 @@ struct Slot {
     });
     return sum;
   }
-  /// Half of the gap that a law of motion leaves open, 0 without one.
+  /// Half of the gap that the laws of motion leave open, 0 without a gap.
   T half_gap() const {
     T gap(0.0);
-    each<role::motion>([&](const auto& law) { gap = law.half_gap(); });
+    each<role::motion>([&](const auto& law) { gap = gap + law.half_gap(); });
     return gap;
   }
   template <class S>
