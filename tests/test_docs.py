@@ -85,6 +85,12 @@ def test_systems_exist_and_the_readme_offers_each() -> None:
     assert {name for cell in of_papers for name in re.findall(r"`(\w+)`", cell)} <= set(kinds())
 
 
+def test_systems_that_the_readme_calls_planned_do_not_exist() -> None:
+    limits = PAGES["README.md"].partition("## What it cannot do")[2].partition("\n## ")[0]
+    assert "`cable_transmission`" in limits
+    assert set(re.findall(r"`(\w+)`", limits)).isdisjoint(kinds())
+
+
 def test_modules_that_the_method_names_exist() -> None:
     modules = set(re.findall(r"`([\w/]+\.(?:py|hpp))`", PAGES["docs/method.md"]))
     assert len(modules) > 10
