@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tendonlab._core import Free, RandomEffect
 from tendonlab.fitting.fitted import Fitted, Run
-from tendonlab.fitting.priors import Free
 from tendonlab.fitting.problem import Problem
 from tendonlab.fitting.uncertainty import informed
 
 FREE = (
-    Free("gain", 0, False, 1.0, 1.0, 1.0, 0.5, -np.inf, np.inf),
-    Free("limit", 1, False, 1.0, 1.0, 1.0, 0.5, 0.0, np.inf),
-    Free("unused", 2, True, 3.0, 3.0, 0.0, 0.5, 0.0, np.inf),
+    Free(name="gain", index=0, log=False, scale=1.0, start=1.0, mean=1.0, sd=0.5),
+    Free(name="limit", index=1, log=False, scale=1.0, start=1.0, mean=1.0, sd=0.5, lower=0.0),
+    Free(name="unused", index=2, log=True, scale=3.0, start=3.0, mean=0.0, sd=0.5, lower=0.0),
 )
 
 
@@ -36,7 +36,7 @@ class Clipped(Problem):
     def linearise(self) -> Fitted:
         gain, limit = (self.system.parameters[name] for name in ("gain", "limit"))
         rows = np.array([[u, 0.0, 0.0] if gain * u < limit else [0.0, 1.0, 0.0] for u in (1.0, 2.0)])
-        run = Run(np.zeros(2), rows, np.zeros((2, 0)), np.zeros(0), np.zeros(2, dtype=int))
+        run = Run(np.zeros(2), rows, np.zeros(2), RandomEffect(np.zeros((2, 0))), np.zeros(2, dtype=int))
         return Fitted(
             added=(), system=self.system, free=self.free, x=np.zeros(3), initial=((),), runs=(run,),
             at_bound=(False,) * 3, informed=tuple(informed([rows], self.free).tolist()), cost=0.0, prior_cost=0.0,

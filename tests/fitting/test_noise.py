@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.floor import friction_groups
-from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, rows_of, sensor_noise
+from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, sensor_noise
 from tendonlab.simulation.prepare import Replay, prepare
 
 TIME = np.arange(0.0, 4.0, 0.002)
@@ -83,10 +83,11 @@ def test_rows_of_a_whitening_are_the_samples_that_count() -> None:
     measured[0, 8] = np.nan
     measured[2] = np.nan
     floor = Floor(np.ones(3), [[0.5, 0.1], [], []], [1.0, 2.0, 0.0], 0.0, repeated=True)
-    outputs, samples = rows_of(floor, measured)
+    whitening = floor.whitening(measured)
+    outputs, samples = whitening.cells()
     assert outputs.tolist() == [0] * 15 + [1] * 20
     assert samples.tolist() == [*range(2, 8), *range(11, 20), *range(20)]
-    assert floor.whitening(measured).rows() == 35
+    assert whitening.rows() == 35
 
 
 def test_an_experiment_that_did_not_measure_an_output_is_whitened_without_it() -> None:

@@ -62,12 +62,12 @@ class Rig:
         return tasks
 
     def free(self, *names: str, **changes: Any) -> list[Any]:
-        values = {name: self.system.values()[self.index(name)] for name in names}
-        defaults = {
-            name: {"index": self.index(name), "log": value > 0, "scale": abs(value) or 1.0, "start": value}
-            for name, value in values.items()
-        }
-        return [_core.Free(**{**defaults[name], **changes}) for name in names]
+        rows = []
+        for name in names:
+            value = self.system.values()[self.index(name)]
+            default = {"index": self.index(name), "log": value > 0, "scale": abs(value) or 1.0, "start": value}
+            rows.append(_core.Free(name=name, **{**default, **changes}))
+        return rows
 
     def fit(self, tasks: list[Any], free: list[Any], **options: Any) -> dict[str, Any]:
         return _core.fit(self.kind, self.system.values(), self.system.active(), tasks, free, self.settings, **options)

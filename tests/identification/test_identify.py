@@ -1,6 +1,8 @@
 """`identify` on datasets that the library simulates itself, so that the truth is known."""
 
+import copy
 import json
+import pickle
 import signal
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -211,6 +213,15 @@ def test_a_nominal_value_at_its_bound_that_nothing_informs_is_not_at_its_bound()
     assert found.at_bound == ()
     assert found.not_informed == ("gravity_torque",)
     assert found.parameters["sd"]["gravity_torque"] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda fit: pickle.loads(pickle.dumps(fit))], ids=["copy", "pickle"])
+def test_a_copy_of_a_result_is_the_same_and_works(fit: Any, copied: Any) -> None:
+    other = copied(fit)
+    pd.testing.assert_frame_equal(other.parameters, fit.parameters)
+    assert other.to_dict() == fit.to_dict()
+    first, second = (one.profile("viscous", num_points=3) for one in (fit, other))
+    np.testing.assert_array_equal(first.to_numpy(), second.to_numpy())  # the same bits
 
 
 def test_everything_is_informed_where_it_is_seen(fit: Any) -> None:

@@ -13,9 +13,7 @@ STEP = 1e-4
 
 def residuals(rig: Any, tasks: list[Any], free: list[Any], x: np.ndarray, **options: Any) -> np.ndarray:
     """Whitened residuals of all tasks at the coordinates x."""
-    moved = [
-        _core.Free(index=f.index, log=f.log, scale=f.scale, start=f.value(at)) for f, at in zip(free, x, strict=True)
-    ]
+    moved = [f.started(f.value(at)) for f, at in zip(free, x, strict=True)]
     return np.concatenate(rig.linearise(tasks, moved, **options)["residuals"])
 
 

@@ -53,6 +53,28 @@ def test_run_to_run_directions_are_the_inverse_root_of_their_covariance(measured
     np.testing.assert_allclose(whitening.apply(signals), root @ plain.apply(signals), rtol=1e-10, atol=1e-10)
 
 
+def test_a_random_effect_is_the_inverse_root_of_its_covariance() -> None:
+    """Also along directions that depend on each other, and along none."""
+    rng = np.random.default_rng(8)
+    directions = rng.normal(size=(30, 3)) * [0.1, 2.0, 50.0]
+    directions = np.column_stack([directions, directions[:, 0]])
+    covariance = np.eye(30) + directions @ directions.T
+    values, vectors = np.linalg.eigh(covariance)
+    root, rows = vectors / np.sqrt(values) @ vectors.T, rng.normal(size=(30, 4))
+    effect = _core.RandomEffect(directions)
+    np.testing.assert_allclose(effect.whiten(rows), root @ rows, atol=1e-12)
+    np.testing.assert_allclose(effect.whiten(rows[:, 1]), root @ rows[:, 1], atol=1e-12)
+    assert effect.volume == pytest.approx(np.linalg.slogdet(covariance)[1])
+    nothing = _core.RandomEffect(np.zeros((30, 0)))
+    assert np.array_equal(nothing.whiten(rows), rows)
+    assert nothing.volume == 0.0
+
+
+def test_rows_of_a_random_effect_must_fit() -> None:
+    with pytest.raises(ParameterError, match=r"expected \(30\) or \(30, m\)"):
+        _core.RandomEffect(np.zeros((30, 1))).whiten(np.zeros(29))
+
+
 def test_coloured_noise_becomes_white() -> None:
     """A simulated AR(2) process leaves innovations of unit variance without correlation."""
     rng = np.random.default_rng(6)

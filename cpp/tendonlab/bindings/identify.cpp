@@ -41,6 +41,23 @@ Eigen::MatrixXd apply_many(const Whitening& whitening, const Array& many) {
   return all;
 }
 
+Free make_free(std::string name, std::size_t index, bool log, double scale, double start, double mean, double sd,
+               double lower, double upper) {
+  return {std::move(name), index, log, scale, start, mean, sd, lower, upper};
+}
+
+/// Whitened rows, (rows,) or (rows, m), in the shape in which they came.
+py::array whitened(const identify::RandomEffect& effect, const Array& rows) {
+  const py::ssize_t columns = rows.ndim() == 2 ? rows.shape(1) : 1;
+  if (rows.ndim() < 1 || rows.ndim() > 2 || rows.shape(0) != effect.rows())
+    throw ParameterError(sentence("rows of shape (", rows.ndim() ? rows.shape(0) : 0, ", …): expected (", effect.rows(),
+                                  ") or (", effect.rows(), ", m)"));
+  Eigen::MatrixXd all = Eigen::Map<const RowMatrix>(rows.data(), effect.rows(), columns);
+  effect.whiten(all);
+  if (rows.ndim() == 1) return py::cast(Eigen::VectorXd(all.col(0)));
+  return py::cast(RowMatrix(all));
+}
+
 Task make_task(const integrate::Experiment& experiment, std::shared_ptr<Whitening> whitening,
                const std::map<std::size_t, double>& fixed, const std::map<std::size_t, double>& added,
                const std::vector<std::pair<std::string, int>>& initial, const std::vector<double>& initial_sd,
@@ -108,11 +125,21 @@ void bind_whitening(py::module_& module) {
            py::arg("ar"), py::arg("sd"), py::arg("measured"), py::arg("directions") = py::none(),
            py::arg("spread") = std::vector<double>())
       .def("rows", &Whitening::rows, "Number of rows of what it gives.")
+      .def("cells", &Whitening::cells, "Channel and sample of each row, (2, rows).")
       .def("apply", &Whitening::apply, py::arg("signals"), ReleaseGil(),
            "Whitened signals, (channels, samples) -> (rows,).")
       .def("apply_many", &apply_many, py::arg("signals"), "Whitened signals, (m, channels, samples) -> (rows, m).")
       .def("residual", &Whitening::residual, py::arg("outputs"), ReleaseGil(),
            "Whitened differences of `outputs` from what was measured, (channels, samples) -> (rows,).");
+}
+
+void bind_random_effect(py::module_& module) {
+  py::class_<identify::RandomEffect>(
+      module, "RandomEffect",
+      "Along `directions`, shape (rows, k), residuals differ by independent normal amounts of unit variance.")
+      .def(py::init<const Eigen::Ref<const Eigen::MatrixXd>&>(), py::arg("directions"))
+      .def("whiten", &whitened, py::arg("rows"), "(I + V V')^(-1/2) rows, (rows,) or (rows, m), for directions V.")
+      .def_property_readonly("volume", &identify::RandomEffect::volume, "log det(I + V V').");
 }
 
 void bind_problem(py::module_& module) {
@@ -138,10 +165,10 @@ void bind_problem(py::module_& module) {
       module, "Free",
       "A fitted parameter: coordinate x = log(value / scale) or value / scale; start, lower, upper are values;\n"
       "mean and sd of the normal prior belong to x (sd infinite: no prior).")
-      .def(py::init([](std::size_t index, bool log, double scale, double start, double mean, double sd, double lower,
-                       double upper) { return Free{index, log, scale, start, mean, sd, lower, upper}; }),
-           py::kw_only(), py::arg("index"), py::arg("log"), py::arg("scale"), py::arg("start"), py::arg("mean") = 0.0,
-           py::arg("sd") = inf, py::arg("lower") = -inf, py::arg("upper") = inf)
+      .def(py::init(&make_free), py::kw_only(), py::arg("name"), py::arg("index"), py::arg("log"), py::arg("scale"),
+           py::arg("start"), py::arg("mean") = 0.0, py::arg("sd") = inf, py::arg("lower") = -inf,
+           py::arg("upper") = inf)
+      .def_readonly("name", &Free::name)
       .def_readonly("index", &Free::index)
       .def_readonly("log", &Free::log)
       .def_readonly("scale", &Free::scale)
@@ -150,7 +177,18 @@ void bind_problem(py::module_& module) {
       .def_readonly("sd", &Free::sd)
       .def_readonly("lower", &Free::lower)
       .def_readonly("upper", &Free::upper)
-      .def("value", &Free::value, py::arg("x"), "Value at the coordinate x.")
+      .def(py::pickle(
+          [](const Free& f) {
+            return py::make_tuple(f.name, f.index, f.log, f.scale, f.start, f.mean, f.sd, f.lower, f.upper);
+          },
+          [](const py::tuple& f) {
+            return make_free(f[0].cast<std::string>(), f[1].cast<std::size_t>(), f[2].cast<bool>(), f[3].cast<double>(),
+                             f[4].cast<double>(), f[5].cast<double>(), f[6].cast<double>(), f[7].cast<double>(),
+                             f[8].cast<double>());
+          }))
+      .def("value", &Free::value, py::arg("x"), "Value at the coordinate x, within the bounds.")
+      .def("started", &Free::started, py::arg("value"),
+           "The same, started at the value inside the bounds that is nearest; a logarithm starts above 0.")
       .def("coordinate", &Free::coordinate, py::arg("value"), "Coordinate of a value.")
       .def("slope", &Free::slope, py::arg("x"), "Derivative of the value by the coordinate, at x.");
 }
@@ -158,6 +196,7 @@ void bind_problem(py::module_& module) {
 
 void bind_identify(py::module_& module) {
   bind_whitening(module);
+  bind_random_effect(module);
   bind_problem(module);
   module.def(
       "linearise",

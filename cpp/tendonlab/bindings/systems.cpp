@@ -1,4 +1,5 @@
 #include "tendonlab/bindings/convert.hpp"
+#include "tendonlab/bindings/pickle.hpp"
 #include "tendonlab/core/error.hpp"
 
 namespace tendonlab::bindings {
@@ -78,13 +79,16 @@ void bind_experiments(py::module_& module) {
   py::class_<Signal>(module, "Signal",
                      "A piecewise cubic in time, from knots (m,) and coefficients (m, 4) about each knot.")
       .def(py::init<>())
+      .def(pickled_signal())
       .def(py::init(&make_signal), py::arg("knots"), py::arg("coefficients"), py::arg("holds"));
   py::class_<Loop>(module, "Loop", "How the command comes about: open, injection or controller.")
       .def(py::init<>())
+      .def(pickled_loop())
       .def(py::init(&make_loop), py::kw_only(), py::arg("kind"), py::arg("axis"), py::arg("output"),
            py::arg("proportional"), py::arg("derivative"), py::arg("reference_weight"), py::arg("limit"),
            py::arg("sample_time"), py::arg("reference"), py::arg("disturbance"));
   py::class_<Experiment>(module, "Experiment", "One experiment as the simulator needs it.")
+      .def(pickled_experiment())
       .def(py::init(&make_experiment), py::kw_only(), py::arg("kind"), py::arg("time"), py::arg("inputs"),
            py::arg("loop"), py::arg("position"), py::arg("velocity"))
       .def(

@@ -16,6 +16,7 @@
 namespace tendonlab::identify {
 namespace {
 constexpr int along_bounds = 3, most_rounds = 10;  ///< steps along the same bounds that make a crawl; solves of a fit
+constexpr double largest = 700.0;                  ///< logarithm beyond which no double follows
 using Vector = Eigen::VectorXd;
 
 /// Those of the free states, a stretch a task, in one piece of memory: Ceres sums over blocks in the order of their
@@ -209,7 +210,7 @@ void require_sound(const Problem& problem) {
   for (const Free& free : problem.free) {
     if (free.index >= count)
       throw ParameterError(sentence("free index = ", free.index, ": expected less than ", count));
-    const std::string& name = problem.model.info().parameters[free.index].name;
+    const std::string& name = free.name;
     require_within("scale of " + name, free.scale, 1e-300, 1e300, "");
     if (!(free.sd > 0)) throw ParameterError(sentence("prior sd of ", name, " = ", free.sd, ": expected more than 0"));
     if (std::isfinite(free.sd)) require_within("prior mean of " + name, free.mean, -1e300, 1e300, "");
@@ -320,14 +321,20 @@ Result settle(const Problem& problem, const Options& options, ceres::Problem& so
 }  // namespace
 
 double Free::value(double x) const {
-  return scale * (log ? std::exp(x) : x);
+  return std::min(std::max(scale * (log ? std::exp(std::min(x, largest)) : x), lower), upper);
 }
 double Free::coordinate(double value) const {
   if (!log) return value / scale;
   return value > 0 ? std::log(value / scale) : -inf;
 }
 double Free::slope(double x) const {
-  return log ? value(x) : scale;
+  return log ? scale * std::exp(std::min(x, largest)) : scale;
+}
+Free Free::started(double value) const {
+  Free other = *this;
+  const double least = log ? std::max(lower, scale * std::exp(-largest)) : lower;
+  other.start = std::min(std::max(value, least), upper);
+  return other;
 }
 
 Result linearise(const Problem& problem) {

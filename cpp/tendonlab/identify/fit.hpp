@@ -10,6 +10,7 @@
 namespace tendonlab::identify {
 /// A parameter that is fitted, through the coordinate x = log(value / scale) or value / scale.
 struct Free {
+  std::string name;
   std::size_t index;  ///< into SystemInfo::parameters
   bool log;
   double scale;         ///< unit of the coordinate, > 0
@@ -17,9 +18,12 @@ struct Free {
   double mean, sd;      ///< normal prior of the coordinate x; infinite sd: none
   double lower, upper;  ///< bounds of the value
 
-  double value(double x) const;
+  double value(double x) const;  ///< within the bounds
   double coordinate(double value) const;
   double slope(double x) const;  ///< d value / d x
+  /// The same, started at the value inside the bounds that is nearest. A logarithm starts at no 0, to which a long step
+  /// of a fit may go.
+  Free started(double value) const;
 };
 
 /// A part of the initial state that is fitted, in one experiment; prior: normal about the experiment's own value.

@@ -1,6 +1,5 @@
 #include "tendonlab/identify/whitening.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "tendonlab/core/error.hpp"
@@ -15,7 +14,7 @@ Whitening::Whitening(std::vector<ChannelNoise> channel_noise, RowMatrix measurem
     for (const double a : noise[c].ar)
       if (!std::isfinite(a)) throw ParameterError(sentence("ar[", c, "] = ", a, ": expected finite coefficients"));
   find_runs();
-  find_basis(directions, spread);
+  find_effect(directions, spread);
 }
 
 bool Whitening::scores(std::size_t channel) const {
@@ -44,19 +43,25 @@ void Whitening::find_runs() {
   if (num_rows == 0) throw ParameterError("sd: no channel has a finite positive one; expected something to score");
 }
 
-void Whitening::find_basis(const Eigen::Ref<const Eigen::MatrixXd>& directions, const std::vector<double>& spread) {
+void Whitening::find_effect(const Eigen::Ref<const Eigen::MatrixXd>& directions, const std::vector<double>& spread) {
   const auto k = static_cast<Eigen::Index>(spread.size());
   if (directions.cols() != k || (k > 0 && directions.rows() != num_rows))
     throw ParameterError(sentence("directions of shape (", directions.rows(), ", ", directions.cols(), "): expected (",
                                   num_rows, ", ", k, "), a column for each spread"));
   for (const double tau : spread) require_within("spread", tau, 0.0, std::numeric_limits<double>::max(), "");
   if (k == 0) return;
-  if (!directions.allFinite()) throw ParameterError("directions: not finite; expected finite numbers");
-  const Eigen::MatrixXd scaled = directions * Eigen::Map<const Eigen::VectorXd>(spread.data(), k).asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(scaled.transpose() * scaled);
-  basis = scaled * gram.eigenvectors();
-  const Eigen::ArrayXd root = (1.0 + gram.eigenvalues().array().max(0.0)).sqrt();
-  gain = -1.0 / (root * (1.0 + root));  // (1/root - 1) / s^2, finite where s = 0
+  effect = RandomEffect(directions * Eigen::Map<const Eigen::VectorXd>(spread.data(), k).asDiagonal());
+}
+
+Cells Whitening::cells() const {
+  Cells of(2, num_rows);
+  Eigen::Index row = 0;
+  for (const Run& run : runs)
+    for (Eigen::Index k = 0; k < run.length; ++k, ++row) {
+      of(0, row) = static_cast<int>(run.channel);
+      of(1, row) = static_cast<int>(run.first + k);
+    }
+  return of;
 }
 
 void Whitening::filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out) const {
@@ -74,9 +79,7 @@ void Whitening::filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Ei
 }
 
 void Whitening::shrink(Eigen::Ref<Eigen::MatrixXd> columns) const {
-  if (gain.size() == 0) return;
-  const Eigen::MatrixXd along = gain.asDiagonal() * (basis.transpose() * columns);
-  columns.noalias() += basis * along;
+  effect.whiten(columns);
 }
 
 Eigen::VectorXd Whitening::apply(const Eigen::Ref<const RowMatrix>& signals) const {

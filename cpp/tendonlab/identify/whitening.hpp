@@ -1,12 +1,14 @@
 #pragma once
 // From residuals in units of their signals to independent ones of unit variance: one matrix per experiment, never
 // formed.
-#include <Eigen/Core>
 #include <limits>
 #include <vector>
 
+#include "tendonlab/identify/random_effect.hpp"
+
 namespace tendonlab::identify {
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Cells = Eigen::Matrix<int, 2, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Noise of one output: e_t = (r_t - sum_k ar[k] r_{t-1-k}) / sd is white with unit variance.
 struct ChannelNoise {
@@ -29,6 +31,8 @@ class Whitening {
   Eigen::Index channels() const { return measured.rows(); }
   Eigen::Index samples() const { return measured.cols(); }
   bool scores(std::size_t channel) const;
+  /// Channel (first) and sample (second) of each row.
+  Cells cells() const;
   /// Whitened `signals`, (channels, samples) -> (rows).
   Eigen::VectorXd apply(const Eigen::Ref<const RowMatrix>& signals) const;
   /// Whitened differences of `signals` from what was measured.
@@ -44,13 +48,12 @@ class Whitening {
     Eigen::Index first, length;
   };
   void find_runs();
-  void find_basis(const Eigen::Ref<const Eigen::MatrixXd>& directions, const std::vector<double>& spread);
+  void find_effect(const Eigen::Ref<const Eigen::MatrixXd>& directions, const std::vector<double>& spread);
 
   std::vector<ChannelNoise> noise;
   RowMatrix measured;
   std::vector<Run> runs;
   Eigen::Index num_rows = 0;
-  Eigen::MatrixXd basis;  ///< left singular vectors of V diag(tau), each times its singular value s
-  Eigen::VectorXd gain;   ///< (1/sqrt(1 + s^2) - 1) / s^2 for each of them
+  RandomEffect effect;
 };
 }  // namespace tendonlab::identify

@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from tendonlab.fitting.priors import Free
+from tendonlab import _core
+from tendonlab._core import Free
 from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS, Uncertainty, uncertainty
 from tendonlab.simulation.system import System
 
@@ -25,29 +26,19 @@ class Score:
 
 @dataclass(frozen=True)
 class Run:
-    """One training experiment at the fit: whitened `residual` (rows,), its slopes by the free coordinates (rows, free)
-    and by the experiment's own unknowns (rows, k) per sd of their priors, at their coordinates `own` (k,); the `block`
-    of 2 s of each row."""
+    """One training experiment at the fit: whitened `residual` (rows,); `jacobian` (rows, free) by the coordinates, the
+    experiment's own unknowns marginalised as the random `effect` about their prior means, by which the residual lies
+    `shift` higher; the `block` of 2 s of each row."""
 
     residual: np.ndarray
-    by_free: np.ndarray
-    by_own: np.ndarray
-    own: np.ndarray
+    jacobian: np.ndarray
+    shift: np.ndarray
+    effect: _core.RandomEffect
     block: np.ndarray
 
     def marginal(self, residual: np.ndarray) -> np.ndarray:
         """Whitened residuals of this experiment, its own unknowns marginalised."""
-        return marginalised(self.by_own, residual - self.by_own @ self.own)
-
-    @cached_property
-    def jacobian(self) -> np.ndarray:
-        """Slopes by the free coordinates of what `marginal` gives."""
-        return marginalised(self.by_own, self.by_free)
-
-    @property
-    def volume(self) -> float:
-        """Log determinant that marginalising the experiment's own unknowns costs."""
-        return float(np.linalg.slogdet(np.eye(self.by_own.shape[1]) + self.by_own.T @ self.by_own)[1])
+        return self.effect.whiten(residual - self.shift)
 
     def parts(self) -> list[np.ndarray]:
         """Rows of each block of 2 s, as masks."""
@@ -107,7 +98,7 @@ class Fitted:
         misfit = self.effective * sum(float(b.residual @ b.residual) for b in self.blocks)
         sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
         _, volume = np.linalg.slogdet(np.eye(len(sd)) + sd[:, None] * self._information * sd)
-        own = sum(run.volume for run in self.runs)
+        own = sum(run.effect.volume for run in self.runs)
         return float(-0.5 * (misfit + np.sum(away) + volume + own))
 
     @cached_property
@@ -125,8 +116,7 @@ class Fitted:
         if len(blocks) == len(self.blocks):
             return self.system
         x = self.x + self._step_without(blocks)
-        values = [min(max(f.value(float(v)), f.lower), f.upper) for f, v in zip(self.free, x, strict=True)]
-        return self.system.with_parameters({f.name: v for f, v in zip(self.free, values, strict=True)})
+        return self.system.with_parameters({f.name: f.value(float(v)) for f, v in zip(self.free, x, strict=True)})
 
     def _step_without(self, blocks: Sequence[Score]) -> np.ndarray:
         """How the coordinates move when some blocks are left out: one Newton step; what is at a bound stays there."""
@@ -171,16 +161,6 @@ class Fitted:
     def _information(self) -> np.ndarray:
         width = len(self.free)
         return self.effective * sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width)))
-
-
-def marginalised(directions: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """(I + K K')^(-1/2) rows: K is a random effect of unit covariance."""
-    if directions.shape[1] == 0:
-        return rows
-    u, s, _ = np.linalg.svd(directions, full_matrices=False)
-    gain = 1.0 - 1.0 / np.sqrt(1.0 + s**2)
-    inner = u.T @ rows
-    return np.asarray(rows - u @ (gain * inner if rows.ndim == 1 else gain[:, None] * inner))
 
 
 def _parts(rows: np.ndarray, masks: Sequence[np.ndarray]) -> list[np.ndarray]:

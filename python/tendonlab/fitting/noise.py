@@ -1,6 +1,4 @@
-"""Noise of the outputs: what sensors add to them, and the filter that makes independent rows of residuals.
-
-A residual has one row for each output and sample that counts, output by output, time increasing."""
+"""Noise of the outputs: what sensors add to them, and the filter that makes independent rows of residuals."""
 
 from __future__ import annotations
 
@@ -84,23 +82,6 @@ def integrated_time(record: np.ndarray) -> float:
     lagged = correlate(record, record, mode="full", method="fft")[len(record) - 1 :]
     ended = np.flatnonzero(lagged <= 0)
     return float(1.0 + 2.0 * np.sum(lagged[1 : ended[0] if len(ended) else None]) / lagged[0])
-
-
-def rows_of(floor: Floor, measured: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Output and sample of each whitened row: a sample counts where it and those that the autoregression needs were
-    measured."""
-    outputs, samples = [], []
-    for c, row in enumerate(measured):
-        if not floor.sd[c] > 0:
-            continue
-        there = np.isfinite(row)
-        whole = there.copy()
-        for lag in range(1, len(floor.ar[c]) + 1):
-            whole[lag:] &= there[:-lag]
-            whole[:lag] = False
-        samples.append(np.flatnonzero(whole))
-        outputs.append(np.full(len(samples[-1]), c))
-    return np.concatenate(outputs), np.concatenate(samples)
 
 
 def blocks_of(time: np.ndarray) -> np.ndarray:

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from tendonlab import _core
+from tendonlab._core import Free
 from tendonlab.data import NominalParameter
 from tendonlab.errors import ParameterError
 from tendonlab.simulation.catalog import DIMENSIONS, ParameterInfo
@@ -17,7 +18,6 @@ from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
 LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 1.5
-LARGEST = 700.0  # logarithm beyond which no double follows: the end of an interval that knows nothing
 
 
 @dataclass(frozen=True)
@@ -35,50 +35,6 @@ class Scale:
 
     def _one(self, scale: str | None) -> float:
         return 1.0 if scale is None else float(getattr(self, scale))
-
-
-@dataclass(frozen=True)
-class Free:
-    """A free parameter. The fit moves x: value = scale·exp(x) if `log`, else scale·x; the prior of x is normal."""
-
-    name: str
-    index: int
-    log: bool
-    scale: float
-    start: float
-    mean: float
-    sd: float
-    lower: float
-    upper: float
-
-    def core(self) -> _core.Free:
-        """For the compiled fit."""
-        return _core.Free(
-            index=self.index, log=self.log, scale=self.scale, start=self.start, mean=self.mean, sd=self.sd,
-            lower=self.lower, upper=self.upper,
-        )  # fmt: skip
-
-    def value(self, x: float) -> float:
-        """The parameter at coordinate x."""
-        return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale * x
-
-    def coordinate(self, value: float) -> float:
-        """x at a value of the parameter."""
-        return math.log(value / self.scale) if self.log else value / self.scale
-
-    def slope(self, x: float) -> float:
-        """d value / d x."""
-        return self.scale * math.exp(min(x, LARGEST)) if self.log else self.scale
-
-    @property
-    def expected(self) -> float:
-        """The value that the prior has in its middle."""
-        return min(max(self.value(self.mean), self.lower), self.upper)
-
-    def started(self, value: float) -> Free:
-        """The same, started elsewhere (inside its bounds). A logarithm starts at no 0, to which a long step may go."""
-        least = max(self.lower, self.value(-LARGEST)) if self.log else self.lower
-        return replace(self, start=min(max(value, least), self.upper))
 
 
 def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
@@ -152,21 +108,35 @@ def _known_by_default(p: ParameterInfo, value: float) -> bool:
 
 def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, scale: float) -> Free:
     lower, upper = max(p.lower, stated.lower), min(p.upper, stated.upper)
+
+    def free(scale: float, mean: float, sd: float, *, log: bool = False) -> Free:
+        return Free(
+            name=p.name,
+            index=index,
+            log=log,
+            scale=scale,
+            start=stated.value,
+            mean=mean,
+            sd=sd,
+            lower=lower,
+            upper=upper,
+        )
+
     if p.lower >= 0 and stated.value > 0:
         default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
-        sd = default if stated.sd is None else stated.sd / stated.value
-        return Free(p.name, index, True, stated.value, stated.value, 0.0, sd, lower, upper)
+        return free(stated.value, 0.0, default if stated.sd is None else stated.sd / stated.value, log=True)
     usual = max(AMPLITUDE_SD * scale, LOG_SD * abs(stated.value))
     if stated.sd is None or math.isinf(stated.sd):  # inf: nothing is believed, and the scale only measures
-        sd = 1.0 if stated.sd is None else math.inf
-        return Free(p.name, index, False, usual, stated.value, stated.value / usual, sd, lower, upper)
-    return Free(p.name, index, False, stated.sd, stated.value, stated.value / stated.sd, 1.0, lower, upper)
+        return free(usual, stated.value / usual, 1.0 if stated.sd is None else math.inf)
+    return free(stated.sd, stated.value / stated.sd, 1.0)
 
 
 def _effect_parameter(index: int, p: ParameterInfo, scale: float, value: float) -> Free:
-    if p.purpose == "shape":
-        return Free(p.name, index, True, scale, value, 0.0, SHAPE_LOG_SD, p.lower, p.upper)
-    return Free(p.name, index, False, scale, value, 0.0, AMPLITUDE_SD, p.lower, p.upper)
+    shape = p.purpose == "shape"
+    return Free(
+        name=p.name, index=index, log=shape, scale=scale, start=value, mean=0.0,
+        sd=SHAPE_LOG_SD if shape else AMPLITUDE_SD, lower=p.lower, upper=p.upper,
+    )  # fmt: skip
 
 
 def _rms(x: np.ndarray) -> float:

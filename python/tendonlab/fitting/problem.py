@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
+from tendonlab._core import Free
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
-from tendonlab.fitting.noise import Floor, blocks_of, rows_of, white
-from tendonlab.fitting.priors import Free, free_parameters
+from tendonlab.fitting.noise import Floor, blocks_of, white
+from tendonlab.fitting.priors import free_parameters
 from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
@@ -60,7 +61,7 @@ class Problem:
         A limit that the fit stays clear of constrains nothing there, but may do so at its prior: then it stays."""
         known = np.array(fit.informed)
         while not known.all():
-            held = {f.name: f.expected for f, seen in zip(self.free, known, strict=True) if not seen}
+            held = {f.name: f.value(f.mean) for f, seen in zip(self.free, known, strict=True) if not seen}
             there = self.at(fit.system.with_parameters(held), fit.initial).linearise()
             seen_there = known | np.array(there.informed)
             if (seen_there == known).all():
@@ -77,8 +78,8 @@ class Problem:
     def _stated(self) -> tuple[Any, ...]:
         system, case = self.system, self.case
         tasks = [case.task(i, self.floor.whitening(case.prepared[i].measured)) for i in case.train]
-        free = [f.core() for f in self.free]
-        return system.kind, system.values(), system.active(keep_zero=True), tasks, free, case.settings()
+        flags = system.active(keep_zero=True)
+        return system.kind, system.values(), flags, tasks, self.free, case.settings()
 
     def _fitted(self, solved: dict[str, Any]) -> Fitted:
         values = {f.name: solved["values"][f.index] for f in self.free}
@@ -101,10 +102,17 @@ class Problem:
 
     def _run(self, i: int, t: int, solved: dict[str, Any]) -> Run:
         ready = self.case.prepared[i]
-        _, samples = rows_of(self.floor, ready.measured)
+        _, samples = self.floor.whitening(ready.measured).cells()
+        by_own = solved["jacobian_initial"][t]
         own = (np.array(solved["initial"][t]) - self.case.own_mean(i)) / self.case.own_sd(i)
-        block = blocks_of(np.asarray(ready.core.time))[samples]
-        return Run(solved["residuals"][t], solved["jacobian"][t], solved["jacobian_initial"][t], own, block)
+        effect = _core.RandomEffect(by_own)
+        return Run(
+            residual=solved["residuals"][t],
+            jacobian=effect.whiten(solved["jacobian"][t]),
+            shift=by_own @ own,
+            effect=effect,
+            block=blocks_of(np.asarray(ready.core.time))[samples],
+        )
 
 
 def initial_state(case: Case, system: System, i: int) -> tuple[float, ...]:

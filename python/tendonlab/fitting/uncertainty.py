@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from tendonlab.fitting.priors import Free
+from tendonlab._core import Free
 
 FEWEST_EXPERIMENTS = 4  # with fewer, contiguous blocks of 2 s stand for them
 NOTHING = 1e-8  # of a prior's variance: data that narrow it by less say nothing
@@ -113,8 +113,7 @@ def _intervals(
     free: Sequence[Free], x: np.ndarray, sd: np.ndarray, half: np.ndarray, correlations: np.ndarray
 ) -> Uncertainty:
     """The same for the values: sd and half intervals of the coordinates through their slopes, within bounds."""
-    bounded = [sorted((f.value(a - h), f.value(a + h))) for f, a, h in zip(free, x, half, strict=True)]
-    slope = np.array([abs(f.slope(a)) for f, a in zip(free, x, strict=True)])
-    lower = np.array([max(b[0], f.lower) for b, f in zip(bounded, free, strict=True)])
-    upper = np.array([min(b[1], f.upper) for b, f in zip(bounded, free, strict=True)])
+    slope = np.array([f.slope(a) for f, a in zip(free, x, strict=True)])
+    lower = np.array([f.value(a - h) for f, a, h in zip(free, x, half, strict=True)])
+    upper = np.array([f.value(a + h) for f, a, h in zip(free, x, half, strict=True)])
     return Uncertainty(sd * slope, lower, upper, correlations)

@@ -18,7 +18,7 @@ from tendonlab.data import require_dataset
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.noise import rows_of, white
+from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Problem, pose
 from tendonlab.identification.result import Identification
@@ -204,7 +204,7 @@ def _errors(case: Case, residuals: Iterable[pd.DataFrame]) -> pd.DataFrame:
 def _residual_frame(problem: Problem, fit: Fitted, t: int) -> pd.DataFrame:
     """Residuals of experiment t by time, s, with a column per measured output, in noise sd."""
     ready = problem.case.prepared[t]
-    outputs, samples = rows_of(problem.floor, ready.measured)
+    outputs, samples = problem.floor.whitening(ready.measured).cells()
     values = np.full(ready.measured.shape, np.nan)
     values[outputs, samples] = fit.runs[t].residual
     columns = {problem.case.outputs[c]: values[c] for c in np.unique(outputs)}

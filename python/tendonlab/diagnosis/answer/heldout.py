@@ -10,7 +10,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.noise import Floor, blocks_of, rows_of
+from tendonlab.fitting.noise import Floor, blocks_of
 from tendonlab.fitting.problem import initial_state
 from tendonlab.simulation.system import System
 
@@ -101,7 +101,7 @@ def predictive_gain(
     for k, i in enumerate(experiments):
         a = whitening[i].residual(before.outputs[k])
         b = whitening[i].residual(after.outputs[k])
-        _, samples = rows_of(floor, case.prepared[i].measured)
+        _, samples = whitening[i].cells()
         block = blocks_of(case.experiments[i].time)[samples]
         gains += list(0.5 * floor.effective * np.bincount(block, a**2 - b**2))
     spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else abs(float(np.sum(gains)))
