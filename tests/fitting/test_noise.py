@@ -55,8 +55,8 @@ def test_readings_that_repeat_are_as_noisy_as_their_rounding() -> None:
 
 
 def test_a_computed_record_is_no_more_exact_than_its_spread_allows_wherever_it_lies() -> None:
-    assert noise_of(MOTION) == pytest.approx(1e-6 * np.std(MOTION))
-    assert noise_of(MOTION + 100.0) == pytest.approx(1e-6 * np.std(MOTION))
+    assert noise_of(MOTION) == pytest.approx(1e-7 * np.std(MOTION))
+    assert noise_of(MOTION + 100.0) == pytest.approx(1e-7 * np.std(MOTION))
 
 
 def test_what_never_moves_and_what_was_not_measured() -> None:

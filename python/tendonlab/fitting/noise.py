@@ -14,7 +14,7 @@ from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
-SMALLEST = 1e-6  # of a record's spread: less noise than single precision keeps
+SMALLEST = 1e-7  # of a record's spread: what single precision resolves
 BLOCK = 2.0  # s: residuals of a mechanism stay correlated for less
 
 
@@ -48,7 +48,7 @@ def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared])
 
     At least that of rounding to the resolution, resolution/√12. The fourth differences of a record that moves on at
     every sample hold its rounding already, those of one that repeats its readings hold none of it: so the larger of
-    the two counts, not their sum. At least 1e-6 of the record's spread, whatever its offset; 1 for a record that never
+    the two counts, not their sum. At least 1e-7 of the record's spread, whatever its offset; 1 for a record that never
     changes. Raises DatasetError where no output was measured."""
     outputs = system.info.outputs
     noise = np.full(len(outputs), np.nan)
