@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from tendonlab._core import Free
+from tendonlab.fitting.priors import Scale, free_parameters
+from tendonlab.simulation.records import NominalParameter
+from tendonlab.simulation.system import System
 
 DAMPING = Free(
     name="cable_damping", index=0, log=True, scale=0.05, start=0.05, mean=0.0, sd=0.6, lower=0.0, upper=math.inf
@@ -48,3 +51,14 @@ def test_a_free_parameter_can_be_copied(copied: object) -> None:
     names = ("name", "index", "log", "scale", "start", "mean", "sd", "lower", "upper")
     assert [getattr(other, name) for name in names] == [getattr(DAMPING, name) for name in names]
     assert np.isinf(other.upper)
+
+
+@pytest.mark.parametrize(("sd", "scale", "prior"), [(0.2, 0.2, 1.0), (math.inf, 0.15, math.inf), (None, 0.15, 1.0)])
+def test_a_value_below_0_has_the_prior_that_is_stated(sd: float | None, scale: float, prior: float) -> None:
+    """Without an sd the prior is 30 % of the value wide; with inf it says nothing."""
+    rig = System(kind="rigid_joint", parameters={"inertia": 1.0, "gravity_torque": -0.5, "torque_constant": 1.0})
+    nominal = {"gravity_torque": NominalParameter(-0.5, sd=sd)}
+    (free,) = free_parameters(rig, nominal, {"joint": Scale(3.0, 1.0, 1.0)})
+    assert (free.name, free.log, free.sd) == ("gravity_torque", False, prior)
+    assert free.scale == pytest.approx(scale)
+    assert free.value(free.mean) == pytest.approx(-0.5)
