@@ -1,14 +1,12 @@
 """Intervals where residuals are not independent."""
 
-import math
-
 import numpy as np
 import pytest
 
-from tendonlab.fitting.priors import Free
+from tendonlab._core import Free
 from tendonlab.fitting.uncertainty import uncertainty
 
-MEAN = Free("joint_coulomb", 0, log=False, scale=1.0, start=0.0, mean=0.0, sd=math.inf, lower=-math.inf, upper=math.inf)
+MEAN = Free(name="joint_coulomb", index=0, log=False, scale=1.0, start=0.0)
 BLOCKS, LENGTH = 400, 25
 
 
