@@ -4,7 +4,7 @@ from importlib import import_module as _import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tendonlab._core import actuation, friction, loading, sensing, sheath, transmission
+    from tendonlab._core import actuation, ends, friction, loading, sensing, sheath, transmission
     from tendonlab.data.dataset import Dataset
     from tendonlab.data.folder import load
     from tendonlab.diagnosis.diagnose import diagnose
@@ -36,6 +36,7 @@ __all__ = [
     "Trajectory",
     "actuation",
     "diagnose",
+    "ends",
     "friction",
     "identify",
     "kinds",
@@ -50,7 +51,7 @@ __all__ = [
 
 # Where each public name is defined: a module is loaded when its first name is used, so that the import takes no time.
 _HOMES = {
-    "tendonlab._core": "actuation friction loading sensing sheath transmission",
+    "tendonlab._core": "actuation ends friction loading sensing sheath transmission",
     "tendonlab.data.dataset": "Dataset",
     "tendonlab.data.folder": "load",
     "tendonlab.diagnosis.diagnose": "diagnose",

@@ -29,6 +29,7 @@ class Laws(ModuleType):
     def __getattr__(self, name: str) -> type[Law]: ...
 
 actuation: Laws
+ends: Laws
 friction: Laws
 loading: Laws
 sensing: Laws
@@ -191,7 +192,13 @@ class TendonRouting:
         at_rest: str,
     ) -> None: ...
     def statics(
-        self, *, torque: ArrayLike, joint_velocity: ArrayLike, model: str, sign_velocity: float, to_motors: bool
+        self,
+        *,
+        torque: ArrayLike,
+        joint_velocity: ArrayLike,
+        losses: Sequence[str],
+        sign_velocity: float,
+        to_motors: bool,
     ) -> dict[str, Floats]: ...
     def joint_motion(self, motor: ArrayLike) -> Floats: ...
     def branch_motion(self, joint: ArrayLike) -> Floats: ...

@@ -1,12 +1,12 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::actuation {
 /// Actuation delay: the command takes effect later.
 ///
 ///   u(t) -> u(t - d)                                                      (time shift, S2 fig. 12)
 ///
-/// d: delay, s. Whoever holds the signal's past applies it. d = 0 switches it off.
+/// d: delay, s. The stepper, which holds the past of the signal, applies it. d = 0 switches it off.
 template <class T>
 struct Delay {
   static constexpr std::string_view name = "delay", noun = "delay", source = "S2 fig. 12", equation = "u(t - d)",
@@ -19,9 +19,5 @@ struct Delay {
                                 "time from command to effort")};
   }
   T lateness() const { return late; }
-  template <class S>
-  S apply(const S& signal) const {
-    return signal;
-  }
 };
 }  // namespace tendonlab::actuation

@@ -1,13 +1,14 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::actuation {
-/// Inertia of a drive whose torque was logged before it: what accelerates the drive does not reach the transmission.
+/// Inertia of a drive whose torque was logged before it: the effort that accelerates the drive does not reach the
+/// transmission.
 ///
-///   u -> u - J dv/dt                                                      (balance of a drive; what S3 leaves out)
+///   u -> u - J dv/dt                                                      (balance of a drive, left out in S3)
 ///
 /// u: effort of the drive, N·m (N). v: its velocity, an input of the system, rad/s (m/s). J: inertia, kg·m² (kg).
-/// J = 0 switches it off. No memory. The system takes the rate from its input; by itself the law changes no signal.
+/// J = 0 switches it off. No memory.
 template <class T>
 struct DriveInertia {
   static constexpr std::string_view name = "drive_inertia", noun = "inertia",
@@ -21,11 +22,8 @@ struct DriveInertia {
                                 inf, "inertia between where the torque is known and the transmission")};
   }
   template <class S>
-  S apply(const S& signal) const {
-    return signal;
+  S apply(const Passing<S>& at) const {
+    return at.signal - inertia * at.acceleration;
   }
-  T lateness() const { return T(0.0); }
-  /// The effort that accelerates it.
-  T reaction(const T& acceleration) const { return inertia * acceleration; }
 };
 }  // namespace tendonlab::actuation

@@ -1,8 +1,8 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::actuation {
-/// Gain error: the effort is not what the torque constant says.
+/// Gain error: the effort differs from command times torque constant.
 ///
 ///   u -> (1 + e) u                                                        (EMPS benchmark, drive gain)
 ///
@@ -11,7 +11,8 @@ template <class T>
 struct GainError {
   static constexpr std::string_view name = "gain_error", noun = "gain error", source = "EMPS benchmark, drive gain",
                                     equation = "(1 + e) u",
-                                    summary = "actuation gain error: the effort is not what the torque constant says";
+                                    summary =
+                                        "actuation gain error: the effort differs from command times torque constant";
   static constexpr unsigned roles = 0, sees = sees_nothing;
   T error;
 
@@ -19,10 +20,9 @@ struct GainError {
     return std::tuple{parameter(&GainError::error, "gain_error", Dimension::ratio, Purpose::amplitude, 0.1, -0.9, inf,
                                 "relative error of the torque constant")};
   }
-  T lateness() const { return T(0.0); }
   template <class S>
-  S apply(const S& signal) const {
-    return signal + error * signal;
+  S apply(const Passing<S>& at) const {
+    return at.signal + error * at.signal;
   }
 };
 }  // namespace tendonlab::actuation

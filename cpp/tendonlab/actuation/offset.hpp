@@ -1,5 +1,5 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::actuation {
 /// Offset of the actuator: an effort that is there at zero command.
@@ -19,10 +19,9 @@ struct Offset {
     return std::tuple{parameter(&Offset::offset, "offset", Dimension::effort, Purpose::amplitude, 0.05, -inf, inf,
                                 "effort at zero command")};
   }
-  T lateness() const { return T(0.0); }
   template <class S>
-  S apply(const S& signal) const {
-    return signal + offset;
+  S apply(const Passing<S>& at) const {
+    return at.signal + offset;
   }
 };
 }  // namespace tendonlab::actuation

@@ -6,8 +6,8 @@ namespace tendonlab::actuation {
 ///
 ///   i' = (V - R i - k omega) / L,   F = -k i                              (S2 eq. 1)
 ///
-/// V: voltage at the terminals, in `load`. omega: speed of the shaft, rad/s. i: current, A, the memory. F: effort
-/// against the motion, N·m, so that the torque of the motor is k i. k = 0 switches it off.
+/// V: voltage at the terminals, which the port gives as its load. omega: speed of the shaft, rad/s. i: current, A, the
+/// state. F: effort against the motion, N·m, so that the torque of the motor is k i. k = 0 switches it off.
 template <class T>
 struct Winding {
   static constexpr std::string_view name = "winding", noun = "current dynamics", source = "S2 eq. 1",
@@ -26,15 +26,14 @@ struct Winding {
                                 inf, "inductance of the winding")};
   }
   template <class S>
-  S rate(const Sliding<S>& at, const S&, const S& current) const {
+  S state_rate(const Sliding<S>& at, const S&, const S& current) const {
     return (at.load - resistance * current - torque_constant * at.velocity) / inductance;
   }
   template <class S>
-  S bristle_force(const Sliding<S>&, const S& current, const S&) const {
+  S state_force(const Sliding<S>&, const S& current, const S&) const {
     return -(torque_constant * current);
   }
-  T dry_share() const { return T(1.0); }
   /// Scale of the current in the error of a step, A.
-  Plain<T> breakaway_displacement(const Plain<T>&) const { return Plain<T>(1.0); }
+  Plain<T> state_scale(const Plain<T>&) const { return Plain<T>(1.0); }
 };
 }  // namespace tendonlab::actuation

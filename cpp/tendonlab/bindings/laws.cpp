@@ -1,11 +1,8 @@
 // Every law of the library as a Python class, made from its table and its roles: a new law needs no line here.
-#include <cmath>
 #include <sstream>
 
 #include "tendonlab/actuation/all.hpp"
-#include "tendonlab/bindings/bind.hpp"
-#include "tendonlab/bindings/words.hpp"
-#include "tendonlab/core/error.hpp"
+#include "tendonlab/bindings/law_methods.hpp"
 #include "tendonlab/friction/all.hpp"
 #include "tendonlab/loading/all.hpp"
 #include "tendonlab/sensing/all.hpp"
@@ -13,11 +10,6 @@
 
 namespace tendonlab::bindings {
 namespace {
-std::string both_units(Dimension dimension) {
-  const DimensionInfo& of = facts(dimension);
-  return of.rotary == of.linear ? std::string(of.rotary) : sentence(of.rotary, " or ", of.linear);
-}
-
 std::string pascal_case(std::string_view name) {
   std::string out;
   bool starts = true;
@@ -28,10 +20,6 @@ std::string pascal_case(std::string_view name) {
   return out;
 }
 
-template <class L>
-constexpr bool plays(unsigned wanted) {
-  return (L::roles & wanted) != 0;
-}
 template <class L>
 std::string describe() {
   std::ostringstream text;
@@ -84,7 +72,7 @@ L from_keywords(const py::dict& given) {
   });
   return law;
 }
-/// Unknown names first: a misspelt keyword is told as such, not as a missing one.
+/// Checks for unknown names first, so that a misspelt keyword is not reported as a missing one.
 template <class L>
 L make(const py::dict& given) {
   for (const auto& item : given) {
@@ -111,117 +99,6 @@ std::string represent(const L& law) {
   return pascal_case(L::name) + "(" + inside + ")";
 }
 
-/// Words are only made for a number that is refused: this runs once a sample.
-void require_finite(std::string_view name, double value, Dimension dimension) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  if (!std::isfinite(value)) require_within(name, value, -largest, largest, both_units(dimension));
-}
-
-/// What a law sees in a port of its own: the modes that a stepper would hold follow from the motion, 0 at rest.
-template <class L>
-Sliding<double> seen(const L* law, double velocity, double position, double load, double wrap = 0.0,
-                     double preload = 0.0) {
-  require_finite("velocity", velocity, Dimension::flow);
-  require_finite("position", position, Dimension::displacement);
-  require_finite("load", load, Dimension::effort);
-  require_finite("wrap_angle", wrap, Dimension::angle);
-  require_finite("preload", preload, Dimension::effort);
-  Sliding<double> at{velocity, position, load,    static_cast<double>((velocity > 0) - (velocity < 0)),
-                     0.0,      wrap,     preload, 0.0};
-  if constexpr (plays<L>(role::motion)) {
-    const double half_gap = law->half_gap();
-    at.side = static_cast<double>((position > half_gap) - (position < -half_gap));
-  }
-  return at;
-}
-
-using pybind11::arg;
-#define TENDONLAB_AT                                                                                       \
-  py::kw_only(), arg("velocity") = 0.0, arg("position") = 0.0, arg("load") = 0.0, arg("wrap_angle") = 0.0, \
-                 arg("preload") = 0.0
-
-template <class L, class Class>
-void bind_dry(Class& law) {
-  if constexpr (plays<L>(role::level))
-    law.def("level",
-            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
-              return of->level(seen(of, velocity, position, load, wrap, preload));
-            }),
-            TENDONLAB_AT, "Its share of the dry friction level, a magnitude, N*m or N.");
-  if constexpr (plays<L>(role::factor))
-    law.def("factor",
-            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
-              return of->factor(seen(of, velocity, position, load, wrap, preload));
-            }),
-            TENDONLAB_AT, "What it multiplies the dry friction level by, 1.");
-}
-template <class L, class Class>
-void bind_force(Class& law) {
-  if constexpr (!plays<L>(role::memory) && plays<L>(role::level | role::force))
-    law.def("force",
-            py::vectorize(+[](const L* of, double velocity, double position, double load, double wrap, double preload) {
-              const auto at = seen(of, velocity, position, load, wrap, preload);
-              double sum = 0;
-              if constexpr (plays<L>(role::level)) sum += at.direction * of->level(at);
-              if constexpr (plays<L>(role::force)) sum += of->force(at);
-              return sum;
-            }),
-            TENDONLAB_AT,
-            "Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest. velocity in "
-            "rad/s\n"
-            "or m/s, position in rad or m, load in N*m or N, wrap_angle in rad, preload (of a pretension) in N*m "
-            "or N; arrays broadcast.");
-}
-template <class L, class Class>
-void bind_memory(Class& law) {
-  if constexpr (plays<L>(role::memory)) {
-    law.def(
-        "rate", py::vectorize(+[](const L* of, double velocity, double deflection, double level) {
-          return of->rate(seen(of, velocity, 0.0, 0.0), level, deflection);
-        }),
-        py::kw_only(), arg("velocity") = 0.0, arg("deflection") = 0.0, arg("level"),
-        "Rate of its deflection, rad/s or m/s, where the dry friction level is `level`, N*m or N; arrays broadcast.");
-    law.def("force", py::vectorize(+[](const L* of, double velocity, double deflection, double level) {
-              const auto at = seen(of, velocity, 0.0, 0.0);
-              return of->bristle_force(at, deflection, of->rate(at, level, deflection)) +
-                     of->dry_share() * level * at.direction;
-            }),
-            py::kw_only(), arg("velocity") = 0.0, arg("deflection") = 0.0, arg("level"),
-            "Force against the motion, N*m or N, at `deflection`, rad or m, where the dry friction level is `level`.");
-  }
-}
-template <class L, class Class>
-void bind_motion(Class& law) {
-  if constexpr (plays<L>(role::motion)) {
-    law.def(
-        "stretch",
-        py::vectorize(+[](const L* of, double position) { return of->motion(seen(of, 0.0, position, 0.0)).position; }),
-        py::kw_only(), arg("position"), "The stretch, rad or m, that is left of `position` for the laws behind it.");
-  }
-}
-/// Signal laws. A delay needs the instants of its signal, and holds the first value before them.
-template <class L, class Class>
-void bind_signal(Class& law) {
-  if constexpr (L::roles == 0)
-    law.def(
-        "apply",
-        [](const L& of, const Array& signal, const py::object& time) -> py::object {
-          py::object past = signal;
-          if (of.lateness() != 0) {
-            if (time.is_none())
-              throw ParameterError("time is missing: expected the instants of the signal, s, to delay it");
-            const Array instants = time.cast<Array>();
-            past =
-                py::module_::import("numpy").attr("interp")(instants.attr("__sub__")(of.lateness()), instants, signal);
-          }
-          return py::vectorize(+[](const L* chain, double value) { return chain->apply(value); })(&of,
-                                                                                                  past.cast<Array>());
-        },
-        arg("signal"), py::kw_only(), arg("time") = py::none(),
-        "The signal behind this law, shape of `signal`; a delay needs `time`, s, shape (n,), for signals of shape "
-        "(n,).");
-}
-
 template <class L>
 py::tuple table() {
   const py::object read_only = py::module_::import("types").attr("MappingProxyType");
@@ -241,6 +118,8 @@ py::tuple roles() {
   if (plays<L>(role::factor)) names.append("factor");
   if (plays<L>(role::force)) names.append("force");
   if (plays<L>(role::memory)) names.append("memory");
+  if (plays<L>(role::gain)) names.append("gain");
+  if (plays<L>(role::output)) names.append("output");
   if (L::roles == role::refines) names.append("refines");
   if (L::roles == 0) names.append("signal");
   return py::tuple(names);
@@ -270,6 +149,7 @@ struct BindLaw {
     bind_force<L>(law);
     bind_memory<L>(law);
     bind_motion<L>(law);
+    bind_output<L>(law);
     bind_signal<L>(law);
   }
 };
@@ -288,8 +168,10 @@ void bind_laws(py::module_& module) {
   py::list registered;
   bind_group<friction::Every>(module, "friction", "Friction laws.", registered);
   bind_group<transmission::Every>(module, "transmission", "Laws of cables and gears.", registered);
-  bind_group<transmission::Sheath>(module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
-  bind_group<loading::Every>(module, "loading", "Laws of what acts on the joint from outside.", registered);
+  bind_group<Joined<transmission::Sheath, transmission::Tendons>::type>(
+      module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
+  bind_group<transmission::Ends>(module, "ends", "Laws of the end sections of cables.", registered);
+  bind_group<loading::Every>(module, "loading", "Laws of the external load of the joint.", registered);
   bind_group<actuation::Every>(module, "actuation", "Laws of actuators.", registered);
   bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
   module.def(

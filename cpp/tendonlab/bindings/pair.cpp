@@ -1,27 +1,13 @@
 #include "tendonlab/bindings/bind.hpp"
-#include "tendonlab/core/error.hpp"
+#include "tendonlab/mechanics/sheaths.hpp"
 #include "tendonlab/transmission/sheath_capstan.hpp"
-#include "tendonlab/transmission/velocity_gate.hpp"
 
 namespace tendonlab::bindings {
 namespace {
-using transmission::AlongSheath;
-using Pair = transmission::TendonPair<double>;
+using mechanics::Sheaths;
+using Pair = mechanics::TendonPair<double>;
 using Numbers = std::vector<double>;
 
-/// A pair in sheaths of one measured shape, at any friction coefficient.
-struct Sheaths {
-  Numbers arc_length, turning;
-  double pretension, input_radius, output_radius;
-  bool uniform_pretension;
-
-  Pair at(double coefficient) const {
-    require_within("friction_coefficient", coefficient, 0.0, inf, "1");
-    const AlongSheath<double> along = transmission::along_sheath(coefficient, arc_length, turning);
-    return {along, input_radius, output_radius,
-            pretension * (uniform_pretension ? arc_length.back() : along.psi_alpha)};
-  }
-};
 Sheaths make_sheaths(Numbers arc_length, Numbers turning, double pretension, double input_radius, double output_radius,
                      bool uniform_pretension) {
   if (arc_length.size() < 2 || arc_length.size() != turning.size())
@@ -37,38 +23,21 @@ Sheaths make_sheaths(Numbers arc_length, Numbers turning, double pretension, dou
   return {std::move(arc_length), std::move(turning), pretension, input_radius, output_radius, uniform_pretension};
 }
 
-/// The whole law sample by sample (S3 eq. 19-21). `friction`: mu_d, mu_s, v_s, v_threshold, s_v in the unit of
-/// velocity. An open gate shuts at `release` times its threshold, so that noise about it does not make it chatter.
-py::dict transmit(const Sheaths& of, const Array& torque, const Array& velocity, const std::array<double, 5>& friction,
-                  double periods, double start, double release) {
+/// `friction`: mu_d, mu_s, v_s, v_threshold, s_v in the unit of velocity.
+py::dict transmit(const Sheaths& of, const Numbers& torque, const Numbers& velocity,
+                  const std::array<double, 5>& friction, double periods, double start, double release) {
   require_within("release", release, 0.0, 1.0, "1");
-  if (torque.ndim() != 1 || velocity.ndim() != 1 || torque.size() != velocity.size())
+  if (torque.size() != velocity.size())
     throw ParameterError(sentence("input_torque and velocity with ", torque.size(), " and ", velocity.size(),
                                   " numbers: expected as many of both, in one row"));
   const transmission::SheathCapstan<double> capstan{friction[0], friction[1], friction[2]};
-  bool is_open = false;
-  const auto count = static_cast<std::size_t>(torque.size());
-  const auto samples = torque.size();
-  Numbers output(count), open(count), coefficient(count);
-  double last = -1.0, gain = 0.0, offset = 0.0, held = start;
-  for (std::size_t k = 0; k < count; ++k) {
-    Sliding<double> at;
-    at.velocity = velocity.data()[k];
-    const double direction = static_cast<double>((at.velocity > 0) - (at.velocity < 0));
-    coefficient[k] = capstan.coefficient(at);
-    if (coefficient[k] != last) {
-      const Pair pair = of.at(coefficient[k]);
-      last = coefficient[k], gain = pair.torque_gain(), offset = pair.offset();
-    }
-    const transmission::VelocityGate<double> gate{is_open ? release * friction[3] : friction[3], friction[4]};
-    is_open = gate.steepness(at.velocity) >= 0.0;
-    const double target = gain * torque.data()[k] + direction * offset;
-    held = transmission::follow(target, held, gate.kept(at.velocity, periods));
-    output[k] = held, open[k] = gate.open(at.velocity);
-  }
-  return py::dict(py::arg("output_torque") = to_array(std::move(output), {samples}),
-                  py::arg("gate") = to_array(std::move(open), {samples}),
-                  py::arg("friction_coefficient") = to_array(std::move(coefficient), {samples}));
+  const auto coefficient = [&](double v) { return capstan.coefficient(Sliding<double>{v}); };
+  auto all =
+      mechanics::transmit(of, torque, velocity, coefficient, {{friction[3], friction[4]}, periods, release}, start);
+  const auto samples = static_cast<py::ssize_t>(torque.size());
+  return py::dict(py::arg("output_torque") = to_array(std::move(all.output), {samples}),
+                  py::arg("gate") = to_array(std::move(all.open), {samples}),
+                  py::arg("friction_coefficient") = to_array(std::move(all.coefficient), {samples}));
 }
 }  // namespace
 

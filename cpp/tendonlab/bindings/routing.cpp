@@ -1,18 +1,17 @@
 // Statics and kinematics of coupled tendon transmissions with any number of joints, row by row of arrays.
-#include "tendonlab/transmission/routing.hpp"
 #include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/core/slot.hpp"
-#include "tendonlab/friction/coulomb.hpp"
-#include "tendonlab/friction/efficiency.hpp"
-#include "tendonlab/friction/load_dependence.hpp"
-#include "tendonlab/friction/viscous.hpp"
+#include "tendonlab/friction/all.hpp"
+#include "tendonlab/mechanics/tendon_network.hpp"
 
 namespace tendonlab::bindings {
 namespace {
-using transmission::AtRest;
-using Rows = std::vector<std::vector<double>>;
-using Branch = Slot<double, Laws<friction::Coulomb, friction::Viscous, friction::LoadDependence>>;
+using mechanics::AtRest;
+using Branch = Slot<double, friction::Branch>;
 using Gear = friction::Efficiency<double>;
+using Network = mechanics::TendonNetwork<Branch, Gear>;
+using Row = Network::Vector;
+using Rows = Network::Rows;
 
 AtRest at_rest_of(const std::string& word) {
   if (word == "drive") return AtRest::drive;
@@ -20,66 +19,18 @@ AtRest at_rest_of(const std::string& word) {
   if (word == "lossless") return AtRest::lossless;
   throw ParameterError(sentence("at_rest = \"", word, "\": expected drive, mean or lossless"));
 }
-/// Effects that a loss model of the paper contains, as bits in the order of `Branch`.
-unsigned effects_of(const std::string& model) {
-  if (model == "ideal") return 0;
-  if (model == "eq11") return 2 | 4;
-  if (model == "eq12") return 1 | 2;
-  if (model == "full") return 1 | 2 | 4;
-  throw ParameterError(sentence("model = \"", model, "\": expected ideal, eq11, eq12 or full"));
+/// The laws of a branch that are on, as bits in their order.
+unsigned bits_of(const std::vector<std::string>& losses) {
+  unsigned bits = 0, next = 1;
+  friction::Branch::for_each([&](auto* law) {
+    if (std::find(losses.begin(), losses.end(), std::remove_pointer_t<decltype(law)>::name) != losses.end())
+      bits |= next;
+    next <<= 1;
+  });
+  return bits;
 }
 
 constexpr std::size_t most_joints = 1000;
-
-/// One transmission a joint, with numbers in it, and room for one state of it.
-struct Transmission {
-  std::size_t n;
-  Rows radius, velocity, tension;
-  std::vector<double> motor_radius, taken_up, joint, torque, own;
-  std::vector<std::vector<Branch>> branch;
-  std::vector<Gear> gear, motor_gear;
-  AtRest at_rest;
-
-  double direction(double v, double sign_velocity) const {
-    return sign_velocity > 0 ? std::tanh(v / sign_velocity) : static_cast<double>((v > 0) - (v < 0));
-  }
-  template <class S>
-  S loss(std::size_t i, std::size_t link, const S& before, double sign_velocity) const {
-    const double v = velocity[i][link];
-    Sliding<S> at;
-    at.velocity = constant<S>(v);
-    at.load = before;
-    at.direction = direction(v, sign_velocity);
-    return branch[i][link].respond(at, S{}).force;
-  }
-  template <class S>
-  S reducer(const Gear& law, const S& output, double v) const {
-    return transmission::reducer_loss([&](const Sliding<S>& at) -> S { return at.direction * law.level(at); }, output,
-                                      v, at_rest);
-  }
-  double gear_input(const Gear& law, double output, double v) const { return output + reducer(law, output, v); }
-  double gear_output(const Gear& law, double input, double v) const {
-    return transmission::beside_loss(input, 1.0, [&](const auto& at) { return reducer(law, at, v); });
-  }
-  double motor_velocity(std::size_t i) const { return velocity[i][0] / motor_radius[i]; }
-
-  void to_motors(double sign_velocity) {
-    transmission::branch_motion(radius, joint, velocity);
-    const auto before = [&](std::size_t i, std::size_t link, double behind) {
-      return transmission::beside_loss(behind, -1.0, [&](const auto& at) { return loss(i, link, at, sign_velocity); });
-    };
-    const auto input = [&](std::size_t j, double output) { return gear_input(gear[j], output, joint[j]); };
-    transmission::propagate_to_motors(radius, torque, before, input, tension, own);
-  }
-  void to_joints(double sign_velocity) {
-    transmission::branch_motion(radius, joint, velocity);
-    const auto behind = [&](std::size_t i, std::size_t link, double before) {
-      return before - loss(i, link, before, sign_velocity);
-    };
-    const auto output = [&](std::size_t j, double input) { return gear_output(gear[j], input, joint[j]); };
-    transmission::propagate_to_joints(radius, behind, output, tension, own, torque);
-  }
-};
 
 Rows rows_of(const Array& matrix, std::string_view name, std::size_t n) {
   if (matrix.ndim() != 2 || matrix.shape(0) != matrix.shape(1) || static_cast<std::size_t>(matrix.shape(0)) != n)
@@ -96,27 +47,19 @@ std::vector<Gear> gears_of(const std::vector<double>& loss, const std::vector<do
   return gears;
 }
 
-using Pair = std::pair<std::vector<double>, std::vector<double>>;
-Transmission make(const Array& radius, const std::vector<double>& motor_radius, const Array& constant_loss,
-                  const Array& tension_loss, const Array& viscous_loss, const Pair& reducers,
-                  const Pair& motor_reducers, const std::string& at_rest) {
+using Losses = std::pair<std::vector<double>, std::vector<double>>;  ///< of reducers, driving and driven back
+Network make(const Array& radius, const Row& motor_radius, const Array& constant_loss, const Array& tension_loss,
+             const Array& viscous_loss, const Losses& reducers, const Losses& motor_reducers,
+             const std::string& at_rest) {
   const std::size_t n = motor_radius.size();
   if (n < 1 || n > most_joints)
-    throw ParameterError(sentence("motor radius: expected 1 to ", most_joints, " of them, one a joint, not ", n));
-  const std::vector<double> zero(n);
-  Transmission of{n,
-                  rows_of(radius, "radius", n),
-                  Rows(n, zero),
-                  Rows(n, std::vector<double>(n + 1)),
-                  motor_radius,
-                  zero,
-                  zero,
-                  zero,
-                  zero,
-                  std::vector<std::vector<Branch>>(n, std::vector<Branch>(n)),
-                  gears_of(reducers.first, reducers.second, n),
-                  gears_of(motor_reducers.first, motor_reducers.second, n),
-                  at_rest_of(at_rest)};
+    throw ParameterError(sentence("motor radius: expected 1 to ", most_joints, " of them, one per joint, not ", n));
+  Network of{rows_of(radius, "radius", n),
+             motor_radius,
+             std::vector<std::vector<Branch>>(n, std::vector<Branch>(n)),
+             gears_of(reducers.first, reducers.second, n),
+             gears_of(motor_reducers.first, motor_reducers.second, n),
+             at_rest_of(at_rest)};
   const Rows dry = rows_of(constant_loss, "constant loss", n), share = rows_of(tension_loss, "tension loss", n),
              viscous = rows_of(viscous_loss, "viscous loss", n);
   for (std::size_t i = 0; i < n; ++i)
@@ -144,71 +87,52 @@ struct Table {
   }
   Array array() && { return to_array(std::move(values), shape); }
 };
-void fill(std::vector<double>& row, const Array& from, std::size_t k) {
-  std::copy_n(from.data() + k * row.size(), row.size(), row.begin());
+Row row_of(const Array& from, std::size_t k, std::size_t n) {
+  return {from.data() + k * n, from.data() + (k + 1) * n};
 }
 
-py::dict statics(Transmission of, const Array& torque, const Array& joint_velocity, const std::string& model,
+py::dict statics(Network of, const Array& torque, const Array& joint_velocity, const std::vector<std::string>& losses,
                  double sign_velocity, bool to_motors) {
-  const std::size_t m = samples_of(torque, to_motors ? "joint torque" : "motor torque", of.n);
-  if (samples_of(joint_velocity, "joint velocity", of.n) != m)
+  const std::size_t n = of.size(), m = samples_of(torque, to_motors ? "joint torque" : "motor torque", n);
+  if (samples_of(joint_velocity, "joint velocity", n) != m)
     throw ParameterError(sentence("joint velocity: expected ", m, " samples, as many as torques"));
-  const unsigned effects = effects_of(model);
   for (auto& row : of.branch)
-    for (auto& branch : row) branch.active = effects;
-  Table result({m, of.n}), tension({m, of.n, of.n + 1}), own({m, of.n}), velocity({m, of.n, of.n});
-  std::vector<double> motor(of.n);
+    for (auto& branch : row) branch.active = bits_of(losses);
+  of.sign_velocity = sign_velocity;
+  Table result({m, n}), tension({m, n, n + 1}), own({m, n}), velocity({m, n, n});
   for (std::size_t k = 0; k < m; ++k) {
-    fill(of.joint, joint_velocity, k);
-    fill(to_motors ? of.torque : motor, torque, k);
-    if (to_motors) {
-      of.to_motors(sign_velocity);
-      for (std::size_t i = 0; i < of.n; ++i)
-        motor[i] = of.gear_input(of.motor_gear[i], of.motor_radius[i] * of.tension[i][0], of.motor_velocity(i));
-    } else {
-      transmission::branch_motion(of.radius, of.joint, of.velocity);
-      for (std::size_t i = 0; i < of.n; ++i)
-        of.tension[i][0] = of.gear_output(of.motor_gear[i], motor[i], of.motor_velocity(i)) / of.motor_radius[i];
-      of.to_joints(sign_velocity);
-    }
-    result.add(to_motors ? motor : of.torque);
-    tension.add(of.tension), own.add(of.own), velocity.add(of.velocity);
+    const Row given = row_of(torque, k, n), moving = row_of(joint_velocity, k, n);
+    const auto at = to_motors ? of.to_motors(given, moving) : of.to_joints(given, moving);
+    result.add(at.torque), tension.add(at.inside.tension), own.add(at.inside.own), velocity.add(at.velocity);
   }
   return py::dict(py::arg("torque") = std::move(result).array(), py::arg("tension") = std::move(tension).array(),
                   py::arg("own") = std::move(own).array(), py::arg("velocity") = std::move(velocity).array());
 }
-Array joint_motion(Transmission of, const Array& motor) {
-  const std::size_t m = samples_of(motor, "motor motion", of.n);
-  Table joint({m, of.n});
-  for (std::size_t k = 0; k < m; ++k) {
-    fill(of.taken_up, motor, k);
-    for (std::size_t i = 0; i < of.n; ++i) of.taken_up[i] *= of.motor_radius[i];
-    transmission::joint_motion(of.radius, of.taken_up, of.joint);
-    joint.add(of.joint);
-  }
+Array joint_motion(const Network& of, const Array& motor) {
+  const std::size_t n = of.size(), m = samples_of(motor, "motor motion", n);
+  Table joint({m, n});
+  for (std::size_t k = 0; k < m; ++k) joint.add(of.joints_of(row_of(motor, k, n)));
   return std::move(joint).array();
 }
-Array branch_motion(Transmission of, const Array& joint) {
-  const std::size_t m = samples_of(joint, "joint motion", of.n);
-  Table branch({m, of.n, of.n});
-  for (std::size_t k = 0; k < m; ++k) {
-    fill(of.joint, joint, k);
-    transmission::branch_motion(of.radius, of.joint, of.velocity);
-    branch.add(of.velocity);
-  }
+Array branch_motion(const Network& of, const Array& joint) {
+  const std::size_t n = of.size(), m = samples_of(joint, "joint motion", n);
+  Table branch({m, n, n});
+  for (std::size_t k = 0; k < m; ++k) branch.add(mechanics::branch_motion(of.radius, row_of(joint, k, n)));
   return std::move(branch).array();
 }
 }  // namespace
 
 void bind_routing(py::module_& module) {
-  py::class_<Transmission>(module, "TendonRouting",
-                           "Coupled tendon transmissions of any number of joints n; arrays (samples, n), row a sample.")
+  py::class_<Network>(
+      module, "TendonRouting",
+      "Coupled tendon transmissions of any number of joints n; arrays (samples, n), one row per sample.")
       .def(py::init(&make), py::kw_only(), py::arg("radius"), py::arg("motor_radius"), py::arg("constant_loss"),
            py::arg("tension_loss"), py::arg("viscous_loss"), py::arg("reducers"), py::arg("motor_reducers"),
            py::arg("at_rest"))
-      .def("statics", &statics, py::kw_only(), py::arg("torque"), py::arg("joint_velocity"), py::arg("model"),
+      .def("statics", &statics, py::kw_only(), py::arg("torque"), py::arg("joint_velocity"), py::arg("losses"),
            py::arg("sign_velocity"), py::arg("to_motors"),
-           "From joint torques to motor torques, or back: torque, tension (samples, n, n + 1), own (samples, n), "
+           "From joint torques to motor torques, or back, with these losses of the branches (names of laws): torque, "
+           "tension (samples, n, n + 1), own (samples, n), "
            "velocity of the branches (samples, n, n).")
       .def("joint_motion", &joint_motion, py::arg("motor"), "Motion of the joints from that of the motors.")
       .def("branch_motion", &branch_motion, py::arg("joint"), "Motion of the branches from that of the joints.");

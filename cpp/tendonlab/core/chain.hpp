@@ -1,9 +1,24 @@
 #pragma once
-// Load, actuation and sensing: laws applied one after the other to a signal, in the order of their list; delays are
-// told apart, since only whoever holds the signal's past can apply them.
+// Load, actuation and sensing: laws that act on a signal one after the other, in the order of their list.
 #include "tendonlab/core/law.hpp"
 
 namespace tendonlab {
+/// What a law of a signal sees. `acceleration`: of the drive whose effort the signal is, where the drive's motion is an
+/// input of the system; else 0.
+template <class S>
+struct Passing {
+  S signal{}, acceleration{};
+};
+/// Does the law change a signal at once? A delay does not: the stepper or recorder, which holds the past of the signal,
+/// applies it.
+template <class Law, class = void>
+inline constexpr bool acts_at_once = false;
+template <class Law>
+inline constexpr bool
+    acts_at_once<Law, std::void_t<decltype(std::declval<const Law&>().apply(std::declval<const Passing<double>&>()))>> =
+        true;
+
+/// `active` has one bit per law: a law that is off is not evaluated.
 template <class T, class List>
 struct Chain {
   using Laws = typename List::template With<T>;
@@ -15,17 +30,27 @@ struct Chain {
   void each(F&& f) const {
     each_index(std::make_index_sequence<size>{}, f);
   }
+  /// The signal behind all laws, delays apart.
   template <class S>
-  S apply(S signal) const {
-    each([&](const auto& law) { signal = law.apply(signal); });
-    return signal;
+  S apply(Passing<S> at) const {
+    each([&](const auto& law) {
+      if constexpr (acts_at_once<std::decay_t<decltype(law)>>) at.signal = law.apply(at);
+    });
+    return at.signal;
   }
+  template <class S>
+  S apply(const S& signal) const {
+    return apply(Passing<S>{signal, S{}});
+  }
+  /// Sum of all delays, s.
   T delay() const {
     T sum{};
-    each([&](const auto& law) { sum = sum + law.lateness(); });
+    each([&](const auto& law) {
+      if constexpr (delays_signal<std::decay_t<decltype(law)>>) sum = sum + law.lateness();
+    });
     return sum;
   }
-  /// What the chain would have to see to give `signal`, delays apart. Only for chains of added terms (sensors).
+  /// The reading of a signal that is 0. Only for chains that add terms (sensors).
   T bias() const { return apply(T(0.0)); }
 
  private:

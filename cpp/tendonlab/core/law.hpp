@@ -3,18 +3,8 @@
 #include "tendonlab/core/parameter.hpp"
 
 namespace tendonlab {
-/// What a law sees at an instant. `direction` and `side` are modes: the stepper freezes them, nothing computes them.
-template <class S>
-struct Sliding {
-  S velocity{}, position{}, load{};  ///< load: effort that the element carries, signed; laws take its magnitude
-  Plain<S> direction{};              ///< +1 or -1; 0 while the port sticks
-  Plain<S> side{};                   ///< flank of a gap that touches: -1, 0 (none), +1
-  S wrap{};                          ///< wrap angle of the cable on its contact, rad
-  S preload{};                       ///< effort that the pretension of the element holds
-  S skew{};                          ///< curvature at the output end of a sheath over its mean, less one
-  S speed() const { return direction * velocity; }  ///< |v|, continued smoothly past zero
-};
-/// sees_direction: the sense of sliding matters although the law makes no dry friction of its own.
+/// Which fields of a Sliding a law reads. sees_direction: the sense of sliding matters although the law makes no dry
+/// friction of its own.
 enum Sees : unsigned {
   sees_nothing = 0,
   sees_velocity = 1,
@@ -25,16 +15,79 @@ enum Sees : unsigned {
   sees_direction = 32
 };
 
+/// What a law sees at an instant. `direction` and `side` are modes: the stepper freezes them, nothing computes them. A
+/// system whose laws see more than this derives a port of its own from it.
+template <class S>
+struct Sliding {
+  using Scalar = S;
+  S velocity{}, position{}, load{};  ///< load: effort that the element carries, signed; laws take its magnitude
+  Plain<S> direction{};              ///< +1 or -1; 0 while the port sticks
+  Plain<S> side{};                   ///< flank of a gap that touches: -1, 0 (none), +1
+  S wrap{};                          ///< wrap angle of the cable on its contact, rad
+  S preload{};                       ///< effort that the pretension of the element holds
+  S speed() const { return direction * velocity; }  ///< |v|, continued smoothly past zero
+
+  /// Calls f(name, its bit of Sees, access) for each quantity: access(port) is that field, whatever the port's scalar.
+  template <class F>
+  static TENDONLAB_INLINE constexpr void for_each_field(F&& f) {
+    f(
+        "velocity", sees_velocity, [](auto& port) -> auto& { return port.velocity; });
+    f(
+        "position", sees_position, [](auto& port) -> auto& { return port.position; });
+    f(
+        "load", sees_load, [](auto& port) -> auto& { return port.load; });
+    f(
+        "wrap_angle", sees_wrap, [](auto& port) -> auto& { return port.wrap; });
+    f(
+        "preload", sees_preload, [](auto& port) -> auto& { return port.preload; });
+  }
+};
+/// The same port with its quantities as another scalar; its modes stay.
+template <class D, template <class> class Port, class S>
+Port<D> with_scalar(const Port<S>& of) {
+  Port<D> out;
+  out.direction = of.direction, out.side = of.side;
+  Port<S>::for_each_field([&](std::string_view, unsigned, auto access) { access(out) = D(access(of)); });
+  return out;
+}
+
 /// Every law states its `name` (in code), its `noun` (what reports call the effect, without the place: "Stribeck
 /// friction"), `equation`, `source` and `summary`.
 
-/// How laws combine in a slot; a law may have several roles. motion: changes what the later ones see; level: adds to
-/// the dry friction; factor: multiplies it; force: adds; memory: has a state; refines: says how the dry friction of
-/// other laws goes, and nothing by itself; whole: all the friction of its slot, a simulator's own choice and no term
-/// that one may lack.
+/// How laws combine in a slot; a law may have several roles. motion: changes what the later laws see; level: adds to
+/// the dry friction; factor: multiplies it; force: adds; memory: has a state with a rate; refines: shapes the dry
+/// friction of other laws and makes none itself; whole: all the friction of its slot, so no other law joins it; gain:
+/// multiplies the effort that the element passes on; output: changes that effort from sample to sample, with a state.
 namespace role {
-enum : unsigned { motion = 1, level = 2, factor = 4, force = 8, memory = 16, refines = 32, whole = 64 };
+enum : unsigned {
+  motion = 1,
+  level = 2,
+  factor = 4,
+  force = 8,
+  memory = 16,
+  refines = 32,
+  whole = 64,
+  gain = 128,
+  output = 256
+};
 }
+
+/// Members that a law states only where it needs them:
+///   T lateness() const;   time by which it shifts a signal, s, else 0
+///   T half_gap() const;   half of the gap that it leaves open in a motion, else 0
+///   T dry_share() const;  share of the dry friction that its memory leaves to the slot, else 1
+template <class Law, class = void>
+inline constexpr bool delays_signal = false;
+template <class Law>
+inline constexpr bool delays_signal<Law, std::void_t<decltype(&Law::lateness)>> = true;
+template <class Law, class = void>
+inline constexpr bool opens_gap = false;
+template <class Law>
+inline constexpr bool opens_gap<Law, std::void_t<decltype(&Law::half_gap)>> = true;
+template <class Law, class = void>
+inline constexpr bool takes_over_dry_friction = false;
+template <class Law>
+inline constexpr bool takes_over_dry_friction<Law, std::void_t<decltype(&Law::dry_share)>> = true;
 
 /// A closed list of laws, in the order in which reports show them and slots apply them.
 template <template <class> class... Law>

@@ -41,6 +41,12 @@ struct Slot {
     List::for_each([&](auto* law) { s |= std::decay_t<decltype(*law)>::sees; });
     return s;
   }
+  static constexpr int gaps() {
+    int n = 0;
+    List::for_each([&](auto* law) { n += opens_gap<std::decay_t<decltype(*law)>>; });
+    return n;
+  }
+  static_assert(gaps() <= 1, "two gaps in a slot need a mode each");
   static constexpr int states = count<role::memory>();
   static_assert(states <= 1, "two memories in a slot need a state each");
   static constexpr unsigned sees = seen();
@@ -61,9 +67,18 @@ struct Slot {
     return asks;
   }
 
+  /// What is left of a motion behind the laws that change it. A law changes the part of the port that it knows.
+  template <class Port>
+  TENDONLAB_INLINE Port moved(Port at) const {
+    each<role::motion>([&](const auto& law) {
+      using Known = decltype(law.motion(at));
+      static_cast<Known&>(at) = law.motion(at);
+    });
+    return at;
+  }
   /// Dry friction level, a magnitude, at the given sliding.
-  template <class S>
-  S dry_level(const Sliding<S>& at) const {
+  template <class Port, class S = typename Port::Scalar>
+  S dry_level(const Port& at) const {
     S sum{};
     each<role::level>([&](const auto& law) { sum = sum + law.level(at); });
     each<role::factor>([&](const auto& law) { sum = sum * law.factor(at); });
@@ -71,38 +86,56 @@ struct Slot {
   }
   /// What can stick: the part of the level that a bristle has not taken over, and what forces that ask for the
   /// direction add along it. Counts at rest.
-  template <class S>
-  S stick_level(const Sliding<S>& at) const {
-    S sum = dry_level(at);
-    each<role::memory>([&](const auto& law) { sum = law.dry_share() * sum; });
+  template <class Port, class S = typename Port::Scalar>
+  S stick_level(const Port& at) const {
+    S sum = left_to_slide(dry_level(at));
     each<role::force>([&](const auto& law) {
       if constexpr ((std::decay_t<decltype(law)>::sees & sees_direction) != 0) {
-        Sliding<S> still = at;
+        Port still = at;
         still.direction = {};
         sum = sum + at.direction * (law.force(at) - law.force(still));
       }
     });
     return sum;
   }
-  /// Half of the gap that the laws of motion leave open, 0 without a gap.
+  /// Is a gap open to the motion, and half of its width, 0 without one.
+  bool gapped() const {
+    bool open = false;
+    each<role::motion>([&](const auto& law) { open = open || opens_gap<std::decay_t<decltype(law)>>; });
+    return open;
+  }
   T half_gap() const {
     T gap(0.0);
-    each<role::motion>([&](const auto& law) { gap = gap + law.half_gap(); });
+    each<role::motion>([&](const auto& law) {
+      if constexpr (opens_gap<std::decay_t<decltype(law)>>) gap = law.half_gap();
+    });
     return gap;
   }
+  /// The part of the dry friction that no memory takes over.
   template <class S>
-  TENDONLAB_INLINE Response<S> respond(Sliding<S> at, const S& z) const {
-    each<role::motion>([&](const auto& law) { at = law.motion(at); });
-    S dry = dry_level(at);
+  S left_to_slide(S dry) const {
+    each<role::memory>([&](const auto& law) {
+      if constexpr (takes_over_dry_friction<std::decay_t<decltype(law)>>) dry = law.dry_share() * dry;
+    });
+    return dry;
+  }
+  template <class Port, class S = typename Port::Scalar>
+  TENDONLAB_INLINE Response<S> respond(Port at, const S& z) const {
+    at = moved(at);
+    const S dry = dry_level(at);
     Response<S> out;
     each<role::force>([&](const auto& law) { out.force = out.force + law.force(at); });
     each<role::memory>([&](const auto& law) {
-      out.rate = law.rate(at, dry, z);
-      out.force = out.force + law.bristle_force(at, z, out.rate);
-      dry = law.dry_share() * dry;
+      out.rate = law.state_rate(at, dry, z);
+      out.force = out.force + law.state_force(at, z, out.rate);
     });
-    out.force = out.force + at.direction * dry;
+    out.force = out.force + at.direction * left_to_slide(dry);
     return out;
   }
 };
+/// One slot with the laws of both, those of `a` first.
+template <class T, class A, class B>
+Slot<T, typename Joined<A, B>::type> joined(const Slot<T, A>& a, const Slot<T, B>& b) {
+  return {std::tuple_cat(a.laws, b.laws), a.active | b.active << A::count};
+}
 }  // namespace tendonlab

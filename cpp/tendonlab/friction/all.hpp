@@ -15,12 +15,14 @@
 
 namespace tendonlab::friction {
 using All = Laws<Coulomb, Viscous, Stribeck, Presliding, LoadDependence, Asymmetry>;
-/// Whole curves of steady friction over speed, for maps; where things move the terms above stand.
+/// Whole curves of steady friction over speed, for friction maps.
 using Curves = Laws<LoadAndRatio, StaticLugre>;
 /// Of a cable that bends in a bushing.
 using Bushing = Laws<BushingBranches, BushingSine, BushingCapstan>;
-/// Of gears: their own friction, and what they lose of what they carry.
+/// Of gears: their own friction, and their loss in proportion to the torque that they carry.
 using Gears = Laws<Arctan, Efficiency>;
+/// Of a tendon on one branch of a routing (S1 eqs 11, 12).
+using Branch = Laws<Coulomb, Viscous, LoadDependence>;
 /// Every law of the group.
 using Every = Joined<All, Curves, Bushing, Gears>::type;
 }  // namespace tendonlab::friction

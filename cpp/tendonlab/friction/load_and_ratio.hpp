@@ -7,7 +7,7 @@ namespace tendonlab::friction {
 ///   g = F_c (1 + L) w^delta + [F_s + F_c (1 + L) w^beta] exp(-|v/v_s|^alpha)
 ///       + F_v v_0 [(N^2 + 1)/N^2 w + (w/L)^gamma],   w = |v|/v_0,  v_0 = 1 m/s (rad/s)      (S0 eq. 11)
 ///
-/// v: sliding velocity, m/s (rad/s). L: relative load > 0, 1: what the bearings carry over what they carry by the own
+/// v: sliding velocity, m/s (rad/s). L: relative load > 0, 1: load of the bearings over their load by the own
 /// weight of the shaft (S0 eq. 9). N: transmission ratio, 1. g: N (N·m), F_v: N·s/m (N·m·s/rad). As printed, the
 /// exponential carries delta as well; alpha is meant, which otherwise occurs nowhere. F_s is not multiplied by load.
 /// The static LuGre curve is no case of it. Stands for the whole friction of its slot; F_c = F_s = F_v = 0 switches it

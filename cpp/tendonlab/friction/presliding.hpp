@@ -26,16 +26,16 @@ struct Presliding {
                                 "share of the dry friction that the bristle takes over")};
   }
   template <class S>
-  S rate(const Sliding<S>& at, const S& level, const S& z) const {
+  S state_rate(const Sliding<S>& at, const S& level, const S& z) const {
     constexpr double smallest = 1e-15;  // an unloaded slot forgets its deflection at once, without dividing by zero
     return at.velocity - stiffness * at.speed() * z / (level + smallest);
   }
   template <class S>
-  S bristle_force(const Sliding<S>&, const S& z, const S& rate) const {
+  S state_force(const Sliding<S>&, const S& z, const S& rate) const {
     return share * (stiffness * z + damping * rate);
   }
   T dry_share() const { return 1.0 - share; }
-  /// Deflection at which sliding sets in: the scale of z.
-  Plain<T> breakaway_displacement(const Plain<T>& level) const { return level / plain(stiffness); }
+  /// Deflection at which sliding sets in.
+  Plain<T> state_scale(const Plain<T>& level) const { return level / plain(stiffness); }
 };
 }  // namespace tendonlab::friction

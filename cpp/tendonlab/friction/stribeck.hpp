@@ -1,5 +1,6 @@
 #pragma once
 #include "tendonlab/core/law.hpp"
+#include "tendonlab/core/terms.hpp"
 
 namespace tendonlab::friction {
 /// Stribeck friction: the extra resistance at low speed, which fades as sliding sets in.
@@ -25,7 +26,7 @@ struct Stribeck {
   }
   template <class S>
   S level(const Sliding<S>& at) const {
-    return excess * exp(-square(at.velocity / falloff));
+    return excess * stribeck_decay(at.velocity, falloff);
   }
 };
 }  // namespace tendonlab::friction

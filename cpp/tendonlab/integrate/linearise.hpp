@@ -42,7 +42,6 @@ struct SlotBlocks {
     seed(s.load, port.load, seen[2]);
     seed(s.wrap, port.wrap, seen[3]);
     seed(s.preload, port.preload, seen[4]);
-    s.skew = L(port.skew.value);  // no motion changes how a sheath is bent
     L own(z);
     if constexpr (has > 0) own.d[inner - 1] = T(1.0);
     const Response<L> f = slot.respond(s, own);

@@ -28,7 +28,7 @@ class ModeTable {
       }
       if constexpr (port.side >= 0) {
         side_port[port.side] = i;
-        gapped[port.side] = slot.has(role::motion);
+        gapped[port.side] = slot.gapped();
       }
     });
   }

@@ -131,7 +131,7 @@ class Simulation {
         const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
         slot.template each<role::memory>([&](const auto& law) {
           const double level = std::max(memory_level[i], 1e-300);
-          sum += square(plain(s.error.memory[memory_before<System, i>()]) / law.breakaway_displacement(level));
+          sum += square(plain(s.error.memory[memory_before<System, i>()]) / law.state_scale(level));
           ++counted;
         });
       }

@@ -1,8 +1,8 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::loading {
-/// Offset of the load: a constant disturbance on the joint that nobody wrote down.
+/// Offset of the load: a constant unknown disturbance on the joint.
 ///
 ///   F -> F + F_0                                              (constant term of the equation of motion)
 ///
@@ -18,12 +18,11 @@ struct Offset {
 
   static constexpr auto parameters() {
     return std::tuple{parameter(&Offset::offset, "offset", Dimension::effort, Purpose::amplitude, 0.05, -inf, inf,
-                                "effort on the joint beside the known one")};
+                                "effort on the joint in addition to the known one")};
   }
-  T lateness() const { return T(0.0); }
   template <class S>
-  S apply(const S& signal) const {
-    return signal + offset;
+  S apply(const Passing<S>& at) const {
+    return at.signal + offset;
   }
 };
 }  // namespace tendonlab::loading

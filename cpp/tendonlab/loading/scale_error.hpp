@@ -1,8 +1,8 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::loading {
-/// Scale error of the load: what acts on the joints is not what was written down, as with a wrong mass.
+/// Scale error of the load: the known load is wrong by a factor, as with a wrong mass.
 ///
 ///   F -> (1 + e) F                                       (gravity is held as if it were known, S1 sec. IV)
 ///
@@ -21,10 +21,9 @@ struct ScaleError {
     return std::tuple{parameter(&ScaleError::error, "scale_error", Dimension::ratio, Purpose::amplitude, 0.1, -0.9, inf,
                                 "relative error of the known load")};
   }
-  T lateness() const { return T(0.0); }
   template <class S>
-  S apply(const S& signal) const {
-    return signal + error * signal;
+  S apply(const Passing<S>& at) const {
+    return at.signal + error * at.signal;
   }
 };
 }  // namespace tendonlab::loading

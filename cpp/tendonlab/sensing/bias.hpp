@@ -1,5 +1,5 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::sensing {
 /// Sensor bias: a constant added to the reading.
@@ -18,10 +18,9 @@ struct Bias {
     return std::tuple{parameter(&Bias::added, "bias", Dimension::output, Purpose::amplitude, 0.05, -inf, inf,
                                 "constant added to the reading")};
   }
-  T lateness() const { return T(0.0); }
   template <class S>
-  S apply(const S& signal) const {
-    return signal + added;
+  S apply(const Passing<S>& at) const {
+    return at.signal + added;
   }
 };
 }  // namespace tendonlab::sensing

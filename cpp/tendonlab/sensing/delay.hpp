@@ -1,12 +1,12 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/chain.hpp"
 
 namespace tendonlab::sensing {
 /// Sensor delay: the reading is old.
 ///
 ///   y(t) -> y(t - d)                                                      (time shift, S2 fig. 12)
 ///
-/// d: delay, s. Whoever holds the signal's past applies it. d = 0 switches it off.
+/// d: delay, s. The recorder, which holds the past of the signal, applies it. d = 0 switches it off.
 template <class T>
 struct Delay {
   static constexpr std::string_view name = "delay", noun = "delay", source = "S2 fig. 12", equation = "y(t - d)",
@@ -19,9 +19,5 @@ struct Delay {
         parameter(&Delay::late, "delay", Dimension::time, Purpose::amplitude, 0.005, 0.0, inf, "age of the reading")};
   }
   T lateness() const { return late; }
-  template <class S>
-  S apply(const S& signal) const {
-    return signal;
-  }
 };
 }  // namespace tendonlab::sensing

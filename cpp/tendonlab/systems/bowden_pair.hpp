@@ -1,16 +1,15 @@
 #pragma once
+#include "tendonlab/mechanics/velocity_gate.hpp"
 #include "tendonlab/systems/sampled.hpp"
-#include "tendonlab/transmission/velocity_gate.hpp"
 
 namespace tendonlab::systems {
 /// Two pretensioned tendons in sheaths join a drive to a load, sample by sample (S3 eq. 18-21):
 ///   target = K_in tau_in - friction(v),   tau_out[k] = h target + (1 - h) tau_out[k-1],
 ///   h = tanh(s_v (v² - v_t²))/2 + 1/2   for a step of the 1 kHz control loop.
-/// K_in = r_out/r_in unless the sheath is bent unevenly. Velocities and torques of the sheath are those of the drive
-/// and of the output; the velocity less what only stretches the cables, where they have `cable:compliance`. The output
-/// before the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle (`sheath:presliding`) takes
-/// the place of the gate by its share. Axial stiffness and length cancel out of the torque of cables that do not
-/// stretch.
+/// K_in = r_out/r_in unless the sheath is bent unevenly. The sheath slides with the velocity of the drive, less the
+/// part that only stretches the cables (`cable:compliance`), and carries the torque of the output. The output before
+/// the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle (`sheath:presliding`) replaces the
+/// gate by its share. Axial stiffness and length cancel out of the torque of cables that do not stretch.
 ///
 /// Of a shape's curvature the torque sees two numbers up to order (mu theta)³: the wrap angle and the mean angle turned
 /// along the sheath, which `curvature_skew` states as the linear curvature that has it.
@@ -22,7 +21,8 @@ struct BowdenPair : SystemDefaults {
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
   static constexpr bool sampled = true, plain_names = true;
-  static constexpr std::size_t carried = 4;    ///< output of the gate, torque that is held and its input, travel
+  /// Numbers that one sample hands to the next: the output of the gate, the held output and its input, and the travel.
+  enum Carried { gate_output, held_output, held_input, travel, carried };
   static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
   static constexpr std::array ports{port("sheath"), port("cable")};
   static constexpr std::array inputs{
@@ -66,80 +66,60 @@ struct BowdenPair : SystemDefaults {
 
   template <class Inputs, class Memory>
   Sample<T, 1, 2> evaluate(const Inputs& in, Memory& memory) const {
-    const T torque = driving(in);
-    const Sliding<T> stretch = stretching(in), lost = moved<1>(stretch);
-    const T velocity = lost_motion() ? T(in.template input<1>() - lost.velocity) : in.template input<1>();
-    T& travel = memory.own[2];
-    travel = travel + in.dt * velocity;
-    Sliding<T> at = sliding(velocity, travel, T((output_radius / input_radius) * torque), wrap_angle);
-    at.preload = 2.0 * output_radius * pretension, at.skew = curvature_skew;
-    const Sliding<T> seen = moved<0>(at);
-    const T friction = answer(std::get<0>(slot), at, memory.slot[0], in.dt), middle = gain(seen) * at.load;
-    if (!memory.begun) memory.own[0] = memory.own[1] = memory.own[3] = middle;
-    const T behind_gate =
-        gated(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[0]);
-    return {{spread(behind_gate, T(middle - smooth(seen)), seen, memory)}, {at, stretch}, {friction, torque}};
+    const auto& sheath = std::get<0>(slot);
+    const T torque = actuation.apply(Passing<T>{in.template input<0>(), in.template slope<1>()});
+    const PairSliding drive = at_drive(in);
+    const T velocity = std::get<1>(slot).moved(drive).velocity;
+    memory.own[travel] = memory.own[travel] + in.dt * velocity;
+    const SheathSliding at = at_sheath(velocity, memory.own[travel], torque), seen = sheath.moved(at);
+    memory.slot[0] = advanced(sheath, at, memory.slot[0], in.dt);
+    const T friction = sheath.respond(at, memory.slot[0]).force;
+    T middle = at.load, smooth{};  // output without friction, and friction without memory and edge
+    sheath.template each<role::gain>([&](const auto& law) { middle = law.gain(seen) * middle; });
+    sheath.template each<role::force>([&](const auto& law) { smooth = smooth + law.force(seen); });
+    if (!memory.begun) memory.own[gate_output] = memory.own[held_output] = memory.own[held_input] = middle;
+    memory.own[gate_output] =
+        behind_gate(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[gate_output]);
+    const T output = held(memory.own[gate_output], T(middle - smooth), seen, memory);
+    return {{output}, {at, stretch(drive)}, {friction, torque}};
   }
 
  private:
-  /// The torque that reaches the sheath's pulley.
+  using PairSliding = transmission::PairSliding<T>;
+  using SheathSliding = transmission::SheathSliding<T>;
+
   template <class Inputs>
-  T driving(const Inputs& in) const {
-    T torque = actuation.apply(in.template input<0>());
-    actuation.each([&](const auto& law) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(law)>, tendonlab::actuation::DriveInertia<T>>)
-        torque = torque - law.reaction(in.template slope<1>());
-    });
-    return torque;
-  }
-  /// Calls f(law) for the laws of the sheath of type `Law` that are on.
-  template <class Law, class F>
-  void each_of(F&& f) const {
-    std::get<0>(slot).template each<Law::roles>([&](const auto& law) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Law>) f(law);
-    });
-  }
-  /// What the laws of slot i see behind those that change it.
-  template <std::size_t i>
-  Sliding<T> moved(Sliding<T> at) const {
-    std::get<i>(slot).template each<role::motion>([&](const auto& law) { at = law.motion(at); });
+  PairSliding at_drive(const Inputs& in) const {
+    PairSliding at;
+    static_cast<Sliding<T>&>(at) = sliding(in.template input<1>(), T(0.0), in.template input<0>());
+    at.load_rate = in.template slope<0>();
+    at.compliance = transmission::pair_compliance(sheath_length, cable_stiffness, input_radius);
     return at;
   }
-  bool lost_motion() const { return std::get<1>(slot).active != 0; }
-  /// How far cables that stretch on their whole length would do so, as an angle of the drive.
-  template <class Inputs>
-  Sliding<T> stretching(const Inputs& in) const {
-    const T per_torque = sheath_length / (2.0 * cable_stiffness * square(input_radius)),
-            torque = in.template input<0>();
-    return sliding(T(per_torque * in.template slope<0>()), T(per_torque * torque), torque);
+  /// Stretch of cables that stretch on their whole length, as an angle of the drive.
+  static Sliding<T> stretch(const PairSliding& drive) {
+    return sliding(T(drive.compliance * drive.load_rate), T(drive.compliance * drive.load), drive.load);
   }
-  /// Friction of the sheath that has no memory and no edge.
-  T smooth(const Sliding<T>& seen) const {
-    T sum{};
-    std::get<0>(slot).template each<role::force>([&](const auto& law) { sum = sum + law.force(seen); });
-    return sum;
+  SheathSliding at_sheath(const T& velocity, const T& position, const T& torque) const {
+    SheathSliding at;
+    static_cast<Sliding<T>&>(at) = sliding(velocity, position, T((output_radius / input_radius) * torque), wrap_angle);
+    at.preload = 2.0 * output_radius * pretension;
+    at.curvature.skew = curvature_skew;
+    return at;
   }
-  /// K_in over the ratio of radii: 1 but for a sheath that is bent unevenly.
-  T gain(const Sliding<T>& seen) const {
-    T gain(1.0);
-    if (plain(seen.skew) == 0.0 && !varies(seen.skew)) return gain;
-    each_of<transmission::SheathCapstan<T>>([&](const auto& law) { gain = law.pair(seen).torque_gain(); });
-    return gain;
+  /// The output behind the gate, `periods` of its loop after it was `before`.
+  T behind_gate(const T& target, const T& velocity, double periods, const T& before) const {
+    const mechanics::VelocityGate<T> gate{threshold_velocity, threshold_slope};
+    return gate.output(target, before, velocity, periods, std::get<0>(slot).left_to_slide(T(1.0)));
   }
-  /// The output behind the gate, remembered in `before`; a bristle takes the place of the gate by its share.
-  T gated(const T& target, const T& velocity, double periods, T& before) const {
-    T kept = transmission::VelocityGate<T>{threshold_velocity, threshold_slope}.kept(velocity, periods);
-    std::get<0>(slot).template each<role::memory>([&](const auto& law) { kept = law.dry_share() * kept; });
-    return before = transmission::follow(target, before, kept);
-  }
-  /// The output where presliding is spread along the cable, whose dry friction acts about `middle`.
+  /// The output behind the laws that hold it; dry friction acts about `middle`.
   template <class Memory>
-  T spread(T output, const T& middle, const Sliding<T>& seen, Memory& memory) const {
-    each_of<transmission::DistributedPresliding<T>>([&](const auto& law) {
-      T &held = memory.own[1], &before = memory.own[3];
-      held = law.held(held, before, middle, std::get<0>(slot).dry_level(seen));
-      before = middle;
-      output = output + law.share * (held - output);
+  T held(T output, const T& middle, const SheathSliding& seen, Memory& memory) const {
+    const auto& sheath = std::get<0>(slot);
+    sheath.template each<role::output>([&](const auto& law) {
+      const auto now = law.next({memory.own[held_output], memory.own[held_input]}, middle, sheath.dry_level(seen));
+      memory.own[held_output] = now.held, memory.own[held_input] = now.input;
+      output = law.output(output, now);
     });
     return output;
   }

@@ -1,6 +1,5 @@
 #pragma once
 #include "tendonlab/systems/ccsrm_cables.hpp"
-#include "tendonlab/transmission/end_compliance.hpp"
 
 namespace tendonlab::systems {
 /// All ports of the mechanism, with contacts that turn as `contact` says.
@@ -32,7 +31,7 @@ struct CcsrmTables : CcsrmCables<T> {
   static constexpr std::array places{Place{"ends", "in the cable ends"}};
 
   using Contact = typename Cables::Contact;
-  using Ends = Slot<T, Laws<transmission::EndCompliance>>;
+  using Ends = Slot<T, transmission::Ends>;
   std::tuple<Slot<T, friction::All>, Contact, Contact, Contact, Contact, typename Cables::Middle, Ends, Ends, Ends,
              Ends>
       slot;

@@ -37,7 +37,7 @@ struct CcsrmTensions : CcsrmCables<T> {
       const T mean[2] = {0.5 * (memory.own[0] + angle[0]), 0.5 * (memory.own[1] + angle[1])};
       const T moved[2] = {(angle[0] - memory.own[0]) / in.dt, (angle[1] - memory.own[1]) / in.dt};
       const auto on_the_way = seen(mean, moved);
-      for (std::size_t i = c11; i < cable; ++i) advance(laws, on_the_way[i], memory.slot[i], in.dt);
+      for (std::size_t i = c11; i < cable; ++i) memory.slot[i] = advanced(laws, on_the_way[i], memory.slot[i], in.dt);
     }
     memory.own = {angle[0], angle[1]};
 

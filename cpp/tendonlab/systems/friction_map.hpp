@@ -2,7 +2,7 @@
 #include "tendonlab/systems/sampled.hpp"
 
 namespace tendonlab::systems {
-/// Steady points of a loaded transmission: one friction torque an input speed, whatever came before.
+/// Steady points of a loaded transmission: one friction torque per input speed, whatever came before.
 ///
 ///   T = T_f(speed; relative load, transmission ratio)                     (S0 eq. 10)
 ///
@@ -37,13 +37,13 @@ struct FrictionMap : SystemDefaults {
 
   static constexpr auto parameters() {
     return std::tuple{parameter(&FrictionMap::relative_load, "relative_load", Dimension::ratio, Purpose::condition, 1.0,
-                                1e-6, inf, "what the bearings carry over what own weight makes them carry")};
+                                1e-6, inf, "load of the bearings over their load by own weight")};
   }
   template <class Inputs, class Memory>
   Sample<T, 1, 1> evaluate(const Inputs& in, Memory&) const {
     Sample<T, 1, 1> of;
     of.port[0] = sliding(in.template input<0>(), T(0.0), relative_load);
-    of.output[0] = of.force[0] = answer(std::get<0>(slot), of.port[0]);
+    of.output[0] = of.force[0] = std::get<0>(slot).respond(of.port[0], T(0.0)).force;
     return of;
   }
 };

@@ -1,6 +1,6 @@
 #pragma once
-// The parameters of `tendon_routing`, one a pulley, a branch or a motor: "radius_2_1" is that of transmission 2 at
-// joint 1, "viscous_loss_2_0" is on its link 0, the base. Written as rules, since nobody reads a list of 52 rows.
+// The parameters of `tendon_routing`, one per pulley, branch or motor: "radius_2_1" is that of transmission 2 at
+// joint 1, "viscous_loss_2_0" is on its link 0, the base. They are made by rules, since nobody reads a list of 52 rows.
 #include <array>
 #include <utility>
 
@@ -8,7 +8,7 @@
 
 namespace tendonlab::systems::tendon {
 inline constexpr std::size_t joints = 4, branches = joints * (joints + 1) / 2;
-/// Where transmission i's branch on link j (or its pulley at joint j), j <= i, stands in lists of them.
+/// Index of transmission i's branch on link j (or of its pulley at joint j), j <= i, in lists of all branches.
 constexpr std::size_t cell(std::size_t i, std::size_t j) {
   return i * (i + 1) / 2 + j;
 }
@@ -19,7 +19,7 @@ constexpr std::size_t row_of(std::size_t cell) {
 }
 
 /// A kind of parameter; where it is not named it is 0 if `typical` is. `first` is the number of the first joint (1) or
-/// link (0), -1 where there is one a motor.
+/// link (0), -1 where there is one per motor.
 struct Kind {
   std::string_view name;
   Dimension dimension;

@@ -1,8 +1,9 @@
 #pragma once
 #include "tendonlab/core/law.hpp"
+#include "tendonlab/core/terms.hpp"
 
 namespace tendonlab::transmission {
-/// Capstan: what a cable that slides over a pulley loses of its tension, as a level of dry friction.
+/// Capstan: the tension that a cable loses as it slides over a pulley, as a level of dry friction.
 ///
 ///   g = |T (1 - exp(-mu theta_w s))| + eps,   T_out = T - g s                (S4 eq. 28, with the magnitude)
 ///
@@ -25,8 +26,7 @@ struct Capstan {
   }
   template <class S>
   S level(const Sliding<S>& at) const {
-    const Plain<S> s = at.direction;  // s (1 - exp(-s x)) is a magnitude for x >= 0, without a kink
-    return abs(at.load) * (s * (1.0 - exp(-(s * (friction_coefficient * at.wrap))))) + smallest;
+    return abs(at.load) * wrap_loss(S(friction_coefficient * at.wrap), at.direction) + smallest;
   }
 };
 }  // namespace tendonlab::transmission

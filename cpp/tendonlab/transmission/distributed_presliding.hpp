@@ -11,8 +11,8 @@ namespace tendonlab::transmission {
 ///
 /// m: output torque without dry friction, N·m (N), s: the sense in which it changes, g: dry friction level, w: friction
 /// that has yet to turn over, d: rise of the output. rho: rise within which all but 1/e of w turns over; at a load of
-/// stiffness K and a breakaway displacement z it is K z, and rho -> 0 is the play operator of S4. a: share of it; 1: no
-/// gate. a = 0 switches it off. Memory: y and m, kept by the system.
+/// stiffness K and a breakaway displacement z it is K z, and rho -> 0 is the play operator of S4. tau: output by the
+/// other laws, N·m (N). a: share of it; 1: no gate. a = 0 switches it off. Memory: y and m.
 template <class T>
 struct DistributedPresliding {
   static constexpr std::string_view name = "distributed_presliding", noun = "distributed presliding friction",
@@ -23,7 +23,7 @@ struct DistributedPresliding {
                                     summary =
                                         "presliding spread along the cable: the output is held until the friction of "
                                         "the whole sheath has turned over";
-  static constexpr unsigned roles = role::refines, sees = sees_nothing;
+  static constexpr unsigned roles = role::output | role::refines, sees = sees_nothing;
   T turnover_rise, share;
 
   static constexpr auto parameters() {
@@ -33,12 +33,23 @@ struct DistributedPresliding {
         parameter(&DistributedPresliding::share, "distributed_share", Dimension::ratio, Purpose::share, 1.0, 0.0, 1.0,
                   "share of the output that is held by torque")};
   }
-  /// y after `before`, when the torque without dry friction of `level` went on from `from` to `to`.
+  /// y and m at a sample.
   template <class S>
-  S held(const S& before, const S& from, const S& to, const S& level) const {
-    const double sense = plain(to) < plain(from) ? -1.0 : 1.0;
-    const S friction = limited(S(from - before), level);  // what is more than the level has slipped
-    return from - friction + sense * rise(S(sense * (to - from)), S(level - sense * friction));
+  struct State {
+    S held{}, input{};
+  };
+  /// The state after `before`, when the output without dry friction has become `input` and the dry friction is `level`.
+  template <class S>
+  State<S> next(const State<S>& before, const S& input, const S& level) const {
+    const double sense = plain(input) < plain(before.input) ? -1.0 : 1.0;
+    const S friction = limited(S(before.input - before.held), level);  // friction above the level has slipped
+    const S turning = rise(S(sense * (input - before.input)), S(level - sense * friction));
+    return {S(before.input - friction + sense * turning), input};
+  }
+  /// The output of the element where the other laws say `effort`.
+  template <class S>
+  S output(const S& effort, const State<S>& now) const {
+    return effort + share * (now.held - effort);
   }
 
  private:
@@ -47,7 +58,7 @@ struct DistributedPresliding {
     const S above = select(plain(friction) < -plain(level), -level, friction);
     return select(plain(above) > plain(level), level, above);
   }
-  /// d at a rise of the input. What it solves is concave: Newton's steps climb to the root from below.
+  /// d at a rise of the input, by Newton: the equation is concave, so its steps climb to the root from below.
   template <class S>
   S rise(const S& input, const S& left) const {
     constexpr int most = 200;  // steps of one rho each, where rho is next to nothing

@@ -2,12 +2,13 @@
 #include "tendonlab/core/law.hpp"
 
 namespace tendonlab::transmission {
-/// Compliance of the sections of a cable beyond its pulleys, which a simulator may have taken for rigid.
+/// Compliance of the end section of a cable beyond its pulley, which a simulator may take for rigid.
 ///
-///   T = T_p + x / c                                                       (S4 section VI, outlook)
+///   F = x / c                                                             (S4 section VI, outlook)
 ///
-/// x: stretch of an end section, m. c: its compliance, m/N. c = 0 is a rigid section: the system is then another one,
-/// without the slips that follow from c, so this law only carries the number. No memory.
+/// x: stretch of the section, m. F: its tension beyond the pretension, N. c: its compliance, m/N. c = 0 switches it
+/// off: a rigid section does not stretch and has no force of its own, its tension follows from that beyond the contact.
+/// The system then has no slip of its own at its contacts. No memory.
 template <class T>
 struct EndCompliance {
   static constexpr std::string_view name = "compliance", noun = "compliance", source = "S4 section VI, outlook",
@@ -21,7 +22,7 @@ struct EndCompliance {
   }
   template <class S>
   S force(const Sliding<S>& at) const {
-    return at.position / compliance;
+    return plain(compliance.value) > 0.0 ? S(at.position / compliance) : constant<S>(0.0);
   }
 };
 }  // namespace tendonlab::transmission

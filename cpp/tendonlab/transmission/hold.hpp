@@ -7,8 +7,9 @@ namespace tendonlab::transmission {
 ///
 ///   F = h (F_held - F_moving)                                    (S2 fig. 12a, b: the time shift of the force jump)
 ///
-/// `load`: what friction would be in the sense of the drive's last motion minus what it is in the sense of the motion
-/// at the guide, N (N·m). h: share of it, 1: all. h = 0 switches it off. No memory of its own: the senses are modes.
+/// F_held: friction in the sense of the drive's last motion, N (N·m). F_moving: friction in the sense of the motion at
+/// the guide, N (N·m). The port gives their difference as its load. h: share of it, 1: all. h = 0 switches it off. No
+/// memory of its own: the senses are modes.
 template <class T>
 struct Hold {
   static constexpr std::string_view name = "hold", noun = "hold by stiction", source = "S2 fig. 12a, b",

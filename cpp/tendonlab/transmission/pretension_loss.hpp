@@ -2,12 +2,12 @@
 #include "tendonlab/core/law.hpp"
 
 namespace tendonlab::transmission {
-/// Pretension loss: a constant share of the pretension that was read is not there where the cable slides.
+/// Pretension loss: where the cable slides, a constant share of the stated pretension is missing.
 ///
 ///   P -> P (1 - c)                                                         (S3 eq. 12, T_s)
 ///
-/// P: torque (tension) that the pretension holds, N·m (N). c < 0: more pretension than was read. c = 0 switches it off.
-/// No memory. Changes what the later laws see, friction and slack alike.
+/// P: torque (tension) that the pretension holds, N·m (N). c < 0: more pretension than stated. c = 0 switches it off.
+/// No memory. The later laws, friction and slack alike, see the pretension that is left.
 template <class T>
 struct PretensionLoss {
   static constexpr std::string_view name = "pretension_loss", noun = "loss of pretension", source = "S3 eq. 12, T_s",
@@ -25,6 +25,5 @@ struct PretensionLoss {
     at.preload = (1.0 - pretension_loss) * at.preload;
     return at;
   }
-  T half_gap() const { return T(0.0); }
 };
 }  // namespace tendonlab::transmission

@@ -35,6 +35,5 @@ struct Ripple {
     at.velocity = at.velocity * (1.0 + (sine * sin(at.position) + cosine * cos(at.position)));
     return at;
   }
-  T half_gap() const { return T(0.0); }
 };
 }  // namespace tendonlab::transmission

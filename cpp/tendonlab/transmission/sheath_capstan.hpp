@@ -1,5 +1,7 @@
 #pragma once
-#include "tendonlab/transmission/tendon_pair.hpp"
+#include "tendonlab/core/terms.hpp"
+#include "tendonlab/mechanics/tendon_pair.hpp"
+#include "tendonlab/transmission/curvature_skew.hpp"
 
 namespace tendonlab::transmission {
 /// Capstan friction of two pretensioned tendons in bent sheaths, with a friction coefficient that depends on speed.
@@ -17,7 +19,9 @@ struct SheathCapstan {
                                         "2 r_out T_s (beta - alpha) Psi_a/(Psi_a + Psi_b) sgn(v), alpha = "
                                         "1/beta = exp(-mu theta), mu = mu_d + (mu_s - mu_d) exp(-(v/v_s)^2)",
                                     summary = "capstan friction of a pretensioned tendon pair in bent sheaths";
-  static constexpr unsigned roles = role::level, sees = sees_velocity | sees_wrap | sees_preload;
+  static constexpr unsigned roles = role::level | role::gain, sees = sees_velocity | sees_wrap | sees_preload;
+  template <class S>
+  using Port = SheathSliding<S>;
   T kinetic, resting;
   Divisor<T> falloff;
 
@@ -31,17 +35,25 @@ struct SheathCapstan {
   }
   template <class S>
   S coefficient(const Sliding<S>& at) const {
-    return kinetic + (resting - kinetic) * exp(-square(at.velocity / falloff));
-  }
-  /// The pair that this friction acts in; lengths and radii cancel out of what is asked of it here.
-  template <class S>
-  TendonPair<S> pair(const Sliding<S>& at) const {
-    const auto along = along_sheath(S(coefficient(at) * at.wrap), at.skew, constant<S>(1.0));
-    return {along, constant<S>(1.0), constant<S>(1.0), S(0.5 * at.preload * along.psi_alpha)};
+    return kinetic + (resting - kinetic) * stribeck_decay(at.velocity, falloff);
   }
   template <class S>
-  S level(const Sliding<S>& at) const {
+  S level(const SheathSliding<S>& at) const {
     return -pair(at).offset();
+  }
+  /// Gain of the pair over its ratio of radii: 1 for a sheath that is bent evenly.
+  template <class S>
+  S gain(const SheathSliding<S>& at) const {
+    const S& skew = at.curvature.skew;
+    return plain(skew) == 0.0 && !varies(skew) ? constant<S>(1.0) : pair(at).torque_gain();
+  }
+
+ private:
+  /// The pair with unit radii and a sheath of unit length, which cancel out of level and gain.
+  template <class S>
+  mechanics::TendonPair<S> pair(const SheathSliding<S>& at) const {
+    const auto along = mechanics::along_sheath(S(coefficient(at) * at.wrap), at.curvature, constant<S>(1.0));
+    return {along, constant<S>(1.0), constant<S>(1.0), S(0.5 * at.preload * along.psi_alpha)};
   }
 };
 }  // namespace tendonlab::transmission

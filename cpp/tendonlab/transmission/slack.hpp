@@ -6,8 +6,8 @@ namespace tendonlab::transmission {
 ///
 ///   g -> g (1 + a max(0, |tau|/P - 1)),   P = 2 r T_s                      (S3 eq. 15, 17 where T_3 = 0)
 ///
-/// tau: torque carried, N·m. P: torque that the pretension holds, N·m. a: 1 where the loose tendon carries nothing,
-/// so that all is on the other one. a = 0 switches it off. No memory.
+/// tau: torque carried, N·m. P: torque that the pretension holds, N·m. a: 1 where the loose tendon carries nothing
+/// and the other one all of the torque. a = 0 switches it off. No memory.
 template <class T>
 struct Slack {
   static constexpr std::string_view name = "slack", noun = "tendon slack", source = "S3 eq. 15, 17 where T_3 = 0",

@@ -35,7 +35,6 @@ struct ToeRegion {
     at.position = select(plain(stiffness) > 0.0, longer, at.position);
     return at;
   }
-  T half_gap() const { return T(0.0); }
 
  private:
   /// F - (T + k x)

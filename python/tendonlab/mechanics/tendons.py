@@ -5,7 +5,7 @@ driven pulley of joint i. A tension is the difference between both runs of a loo
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
@@ -18,6 +18,12 @@ from tendonlab.errors import ParameterError
 
 Model = Literal["ideal", "eq11", "eq12", "full"]
 AtRest = Literal["drive", "mean", "lossless"]
+LOSSES: Mapping[str, tuple[str, ...]] = {  # laws of a branch in each model
+    "ideal": (),
+    "eq11": ("load_dependence", "viscous"),
+    "eq12": ("coulomb", "viscous"),
+    "full": ("coulomb", "load_dependence", "viscous"),
+}
 LARGEST_SYSTEM = 4  # joints of the system `tendon_routing`
 
 
@@ -55,7 +61,7 @@ def back_driven_efficiency(efficiency: ArrayLike) -> np.ndarray:
 class Reducer:
     """A reducer of `ratio` (input turns a turn of the output) on a driven pulley. `efficiency` in (0.5, 1] while it
     drives its load; `driven_back` the same while the load drives it, by default S1 eq. 10. `allow_self_locking` admits
-    what the load cannot drive back. Raises ParameterError. Source: S1 eqs 9, 10."""
+    reducers that the load cannot drive back. Raises ParameterError. Source: S1 eqs 9, 10."""
 
     efficiency: float
     ratio: float = 1.0
@@ -151,9 +157,9 @@ NO_LOSSES = BranchLosses.none(0)
 
 @dataclass(frozen=True, kw_only=True)
 class Propagation:
-    """Statics at each sample. `torque` (…, n): what was asked for, N·m, of the motors or on the joints. `tension`
-    (…, n, n + 1), N: [i, 0] at motor i, [i, j] at joint j (counted from 1). `own` (…, n), N·m: what each transmission
-    gives to its own joint. `branch_velocity` (…, n, n), m/s. Entries without a branch are 0."""
+    """Statics at each sample. `torque` (…, n), N·m: the answer, of the motors or on the joints. `tension`
+    (…, n, n + 1), N: [i, 0] at motor i, [i, j] at joint j (counted from 1). `own` (…, n), N·m: torque of each
+    transmission on its own joint. `branch_velocity` (…, n, n), m/s. Entries without a branch are 0."""
 
     torque: np.ndarray
     tension: np.ndarray
@@ -245,7 +251,7 @@ class TendonTransmission:
             raise ParameterError(f"radius = {radius.tolist()}: expected no 0 on the diagonal, the driven pulleys")
         losses = BranchLosses.none(n) if self.losses is NO_LOSSES else self.losses
         if len(losses.constant) != n:
-            raise ParameterError(f"losses of {len(losses.constant)} transmissions: expected {n}, one a motor radius")
+            raise ParameterError(f"losses of {len(losses.constant)} transmissions: expected {n}, one per motor radius")
         made: dict[str, Any] = {"radius": radius, "motor_radius": motor, "losses": losses}
         for name in ("reducers", "motor_reducers"):
             given = getattr(self, name)
@@ -313,8 +319,8 @@ class TendonTransmission:
 
     def _rows(self, apply: Any, motion: ArrayLike) -> np.ndarray:
         values = self._matching("motion", motion)
-        found = apply(values.reshape(-1, self.num_joints))
-        return np.asarray(found).reshape(*values.shape[:-1], *found.shape[1:])
+        rows = apply(values.reshape(-1, self.num_joints))
+        return np.asarray(rows).reshape(*values.shape[:-1], *rows.shape[1:])
 
     def _matching(self, name: str, values: ArrayLike) -> np.ndarray:
         array = _floats(name, values)
@@ -331,12 +337,14 @@ class TendonTransmission:
         torque, velocity = _together(torque=torque, joint_velocity=velocity)
         if not 0.0 <= _floats("sign_velocity", sign_velocity, shape=()) < np.inf:
             raise ParameterError(f"sign_velocity = {sign_velocity}: expected a finite speed of at least 0, m/s")
+        if model not in LOSSES:
+            raise ParameterError(f'model = "{model}": expected ideal, eq11, eq12 or full')
         lead, n = torque.shape[:-1], self.num_joints
-        found = self.core.statics(
-            torque=torque.reshape(-1, n), joint_velocity=velocity.reshape(-1, n), model=model,
+        statics = self.core.statics(
+            torque=torque.reshape(-1, n), joint_velocity=velocity.reshape(-1, n), losses=LOSSES[model],
             sign_velocity=sign_velocity, to_motors=to_motors,
         )  # fmt: skip
-        shaped = {name: np.asarray(a).reshape(*lead, *a.shape[1:]) for name, a in found.items()}
+        shaped = {name: np.asarray(a).reshape(*lead, *a.shape[1:]) for name, a in statics.items()}
         return Propagation(
             torque=shaped["torque"], tension=shaped["tension"], own=shaped["own"], branch_velocity=shaped["velocity"]
         )

@@ -5,8 +5,8 @@
 
 #include "tendonlab/core/law.hpp"
 
-namespace tendonlab::transmission {
-/// What friction makes of a tension along one sheath: the shares lost and gained over the whole of it, and the
+namespace tendonlab::mechanics {
+/// Effect of friction on a tension along one sheath: the shares lost and gained over its whole length, and the
 /// integrals of exp(-mu phi) and exp(+mu phi), m.
 template <class T>
 struct AlongSheath {
@@ -15,10 +15,11 @@ struct AlongSheath {
   T psi_alpha{}, psi_beta{};
 };
 
-/// Along a sheath whose curvature grows linearly, theta/L (1 + skew (2 s/L - 1)); even for skew 0. mu and theta enter
-/// as their product `friction`. Ten-point Gauss quadrature: no cancellation as mu -> 0, 1e-15 up to mu theta = 5.
-template <class T>
-AlongSheath<T> along_sheath(const T& friction, const T& skew, const T& length) {
+/// Along a sheath of the given curvature: `density(u)` over its mean at the share u of the length, `turned(u)` the
+/// share of the wrap angle before u. mu and theta enter as their product `friction`. Ten-point Gauss quadrature: no
+/// cancellation as mu -> 0, error 1e-15 up to mu theta = 5.
+template <class T, class Curvature>
+AlongSheath<T> along_sheath(const T& friction, const Curvature& curvature, const T& length) {
   constexpr std::array<double, 5> node{0.14887433898163121, 0.43339539412924719, 0.67940956829902441,
                                        0.86506336668898451, 0.97390652851717172};
   constexpr std::array<double, 5> weight{0.29552422471475287, 0.26926671930999636, 0.21908636251598204,
@@ -26,8 +27,8 @@ AlongSheath<T> along_sheath(const T& friction, const T& skew, const T& length) {
   AlongSheath<T> sum;
   for (std::size_t k = 0; k < 10; ++k) {
     const double centred = k < 5 ? node[k] : -node[k - 5], u = 0.5 * (1.0 + centred), w = 0.5 * weight[k % 5];
-    const T density = 1.0 + centred * skew;  // curvature over its mean
-    const T fading = exp(-(friction * (u + (u * u - u) * skew)));
+    const T density = curvature.density(u);
+    const T fading = exp(-(friction * curvature.turned(u)));
     const T growing = 1.0 / fading;
     sum.loss = sum.loss + (w * density) * fading;
     sum.gain = sum.gain + (w * density) * growing;
@@ -38,7 +39,7 @@ AlongSheath<T> along_sheath(const T& friction, const T& skew, const T& length) {
 }
 
 /// Along a sheath of any shape: `turning` phi, rad, at each `arc_length` s, m, both from 0, evenly bent between them.
-/// Simpson's rule a stretch, whose middle is the geometric mean of its ends: an even sheath comes out exactly.
+/// Simpson's rule on each stretch, its middle the geometric mean of its ends: an even sheath comes out exactly.
 template <class T>
 AlongSheath<T> along_sheath(const T& coefficient, const std::vector<double>& arc_length,
                             const std::vector<double>& turning) {
@@ -90,4 +91,4 @@ struct TendonPair {
             (growing * tension[2] - pretension_moment) / cable_stiffness};
   }
 };
-}  // namespace tendonlab::transmission
+}  // namespace tendonlab::mechanics

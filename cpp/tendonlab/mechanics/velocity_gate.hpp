@@ -1,13 +1,13 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/core/dual.hpp"
 
-namespace tendonlab::transmission {
+namespace tendonlab::mechanics {
 /// The dead zone of S3: below a threshold velocity the transmission holds its output, above it the output follows.
 ///
 ///   h = tanh(s_v (v² - v_t²))/2 + 1/2                                      (S3 eq. 20)
 ///   tau[k] = h target[k] + (1 - h) tau[k-1]                                (S3 eq. 21)
 ///
-/// v: velocity of the drive, rad/s. h: share of a step of the control loop that gets through, 1. Over n of its periods
+/// v: velocity of the drive, rad/s. h: share of one step of the control loop that passes, 1. Over n of its periods
 /// (1 - h)^n is kept, so that a log at another rate means the same.
 template <class T>
 struct VelocityGate {
@@ -22,10 +22,11 @@ struct VelocityGate {
     const T shut = select(plain(a) < 0.0, T(1.0), rest) / (1.0 + rest);
     return periods == 1.0 ? shut : T(power(shut, T(periods)));
   }
+  /// The output after `periods` periods: it moves from `previous` to `target`, less the share that is kept, and stays
+  /// bit for bit where all is kept. `acting`: share of the gate that acts, 1 unless a bristle takes its place.
+  T output(const T& target, const T& previous, const T& velocity, double periods, const T& acting = T(1.0)) const {
+    const T same = acting * kept(velocity, periods);
+    return same * previous + (1.0 - same) * target;
+  }
 };
-/// The output that follows `target` but for the share `kept` of what it was; held bit for bit where all is kept.
-template <class T>
-T follow(const T& target, const T& previous, const T& kept) {
-  return kept * previous + (1.0 - kept) * target;
-}
-}  // namespace tendonlab::transmission
+}  // namespace tendonlab::mechanics
