@@ -1,4 +1,5 @@
 #pragma once
+#include "tendonlab/actuation/deadband.hpp"
 #include "tendonlab/actuation/delay.hpp"
 #include "tendonlab/actuation/drive_inertia.hpp"
 #include "tendonlab/actuation/gain_error.hpp"
@@ -6,8 +7,8 @@
 #include "tendonlab/actuation/winding.hpp"
 
 namespace tendonlab::actuation {
-using All = Laws<Delay, GainError, Offset>;
-/// What makes effort of a command and has a state of its own: part of a system, no link of a chain.
+using All = Laws<Delay, Deadband, GainError, Offset>;
+/// Of a motor whose current is a state: a law of a slot.
 using Motor = Laws<Winding>;
 /// Of drives whose motion is an input, not a state.
 using Driven = Laws<DriveInertia>;
