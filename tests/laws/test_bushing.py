@@ -17,8 +17,8 @@ def test_branches_with_the_signs_of_the_bisector_are_its_friction() -> None:
 
 def test_branches_meet_at_their_edges() -> None:
     law = _core.friction.BushingBranches(**{**BY_BISECTOR, "a1": 7.0, "c1": 0.2})
-    beside = law.force(velocity=1.0, wrap_angle=np.array([0.2 - 1e-9, 0.2, 0.2 + 1e-9]), load=150.0)
-    assert beside == pytest.approx(7.0, abs=1e-6)
+    near = law.force(velocity=1.0, wrap_angle=np.array([0.2 - 1e-9, 0.2, 0.2 + 1e-9]), load=150.0)
+    assert near == pytest.approx(7.0, abs=1e-6)
 
 
 def test_a_straight_cable_does_not_rub_and_half_a_turn_does() -> None:

@@ -36,6 +36,6 @@ def test_a_coefficient_of_its_own_each_way() -> None:
     mean = tl.transmission.Capstan(friction_coefficient=0.15, smallest_level=0.0)
     differs = tl.transmission.Asymmetry(friction_coefficient=0.15, coefficient_asymmetry=0.1)
     at = {"velocity": np.array([1.0, -1.0]), "wrap_angle": WRAP}
-    found = mean.level(load=50.0, **at) * differs.factor(**at)
+    answer = mean.level(load=50.0, **at) * differs.factor(**at)
     wanted = 50.0 * np.array([1 - np.exp(-0.165 * WRAP), np.exp(0.135 * WRAP) - 1])
-    np.testing.assert_allclose(found, wanted, rtol=1e-12)
+    np.testing.assert_allclose(answer, wanted, rtol=1e-12)

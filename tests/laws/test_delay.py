@@ -14,8 +14,8 @@ both = pytest.mark.parametrize("of", [_core.actuation.Delay, _core.sensing.Delay
 @both
 def test_a_ramp_comes_late_by_the_delay_and_starts_with_its_first_value(of: Any) -> None:
     time = np.array([0.0, 0.1, 0.2, 0.3, 0.4])
-    found = of(delay=0.25).apply(4.0 * time + 1.0, time=time)
-    np.testing.assert_allclose(found, [1.0, 1.0, 1.0, 1.2, 1.6])  # from 0.25 s on 4 (t - 0.25) + 1
+    answer = of(delay=0.25).apply(4.0 * time + 1.0, time=time)
+    np.testing.assert_allclose(answer, [1.0, 1.0, 1.0, 1.2, 1.6])  # from 0.25 s on 4 (t - 0.25) + 1
 
 
 @both

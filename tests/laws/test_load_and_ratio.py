@@ -37,14 +37,14 @@ def test_far_beyond_the_peak_the_dry_part_is_a_power_of_speed() -> None:
 
 def test_at_its_velocity_the_peak_has_lost_all_but_1_e() -> None:
     """0.04 / e + (0.01 · 2 · 20) / e + 0.02 sqrt(20), by hand."""
-    found = law(coulomb=0.01, static_friction=0.04).force(velocity=20.0, load=1.0)
-    assert found == pytest.approx(0.0147152 + 0.1471518 + 0.0894427, rel=1e-6)
+    answer = law(coulomb=0.01, static_friction=0.04).force(velocity=20.0, load=1.0)
+    assert answer == pytest.approx(0.0147152 + 0.1471518 + 0.0894427, rel=1e-6)
 
 
 def test_load_lowers_the_viscous_part_and_the_ratio_weighs_the_second_shaft() -> None:
     """F_v ((N² + 1)/N² w + sqrt(w/L)): 1e-3 (1.25 · 16 + 4) at L = 1, 1e-3 (20 + 2) at L = 4."""
-    found = law(viscous=1e-3).force(velocity=[16.0, 16.0], load=[1.0, 4.0])
-    assert found == pytest.approx([0.024, 0.022], rel=1e-13)
+    answer = law(viscous=1e-3).force(velocity=[16.0, 16.0], load=[1.0, 4.0])
+    assert answer == pytest.approx([0.024, 0.022], rel=1e-13)
 
 
 def test_without_a_stated_load_nothing_is_infinite() -> None:

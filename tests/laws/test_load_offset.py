@@ -26,8 +26,8 @@ def rest(output: str, **parameters: float) -> float:
 def test_a_pendulum_hangs_where_gravity_balances_it() -> None:
     """g sin q = F_0: at 30 degrees for half of the gravity torque, forwards for a positive one."""
     given = {"inertia": 1.0, "gravity_torque": 2.0, "torque_constant": 3.0, "viscous": 1.5, "load_offset": 1.0}
-    found = rest("joint_angle", **given)
-    assert found == pytest.approx(0.5235988, rel=1e-6)
+    answer = rest("joint_angle", **given)
+    assert answer == pytest.approx(0.5235988, rel=1e-6)
 
 
 def test_it_pulls_at_the_joint_and_not_at_the_motor() -> None:

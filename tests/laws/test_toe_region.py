@@ -15,19 +15,19 @@ def tension(elongation: np.ndarray, *, preload: float, toe: float) -> np.ndarray
 
 @pytest.mark.parametrize("preload", [0.0, 50.0, 200.0, 300.0])
 def test_it_starts_at_the_preload_and_is_linear_above_its_end(preload: float) -> None:
-    found = tension(ELONGATION, preload=preload, toe=200.0)
-    assert found[400] == pytest.approx(preload, abs=1e-6)
-    slope = np.gradient(found, ELONGATION)
-    assert slope[found > 201.0] == pytest.approx(K, rel=1e-9)
+    answer = tension(ELONGATION, preload=preload, toe=200.0)
+    assert answer[400] == pytest.approx(preload, abs=1e-6)
+    slope = np.gradient(answer, ELONGATION)
+    assert slope[answer > 201.0] == pytest.approx(K, rel=1e-9)
 
 
 def test_below_its_end_stiffness_falls_with_the_root_of_the_tension() -> None:
     """So the force is quadratic, from the natural length on."""
-    found = tension(ELONGATION, preload=50.0, toe=200.0)
-    inside = (found > 2.0) & (found < 198.0)
-    slope = np.gradient(found, ELONGATION)
-    assert slope[inside] == pytest.approx(K * np.sqrt(found[inside] / 200.0), rel=1e-3)
-    natural = ELONGATION[np.flatnonzero(found >= 0.0)[0]]
+    answer = tension(ELONGATION, preload=50.0, toe=200.0)
+    inside = (answer > 2.0) & (answer < 198.0)
+    slope = np.gradient(answer, ELONGATION)
+    assert slope[inside] == pytest.approx(K * np.sqrt(answer[inside] / 200.0), rel=1e-3)
+    natural = ELONGATION[np.flatnonzero(answer >= 0.0)[0]]
     assert natural == pytest.approx(-2.0 * np.sqrt(50.0 * 200.0) / K, abs=2e-5)
 
 
