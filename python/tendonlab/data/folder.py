@@ -107,7 +107,7 @@ def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:
 
 def _doubts(experiments: Iterable[Experiment], signals: Iterable[SignalSpec], *, info: catalog.SystemInfo) -> list[str]:
     """A warning for every covariate whose name is nearly that of a signal or parameter of the system."""
-    known = [signal.name for signal in (*info.inputs, *info.outputs)]
+    known = [signal.name for signal in info.signals]
     parameters = [parameter.name for parameter in info.parameters]
     covariates = {
         f"signal {spec.name!r}": nearest_name(spec.name, known, likeness=0.8)

@@ -109,7 +109,7 @@ def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
 
 
 def _find(name: str, info: SystemInfo) -> InputInfo | OutputInfo | None:
-    return next((signal for signal in (*info.inputs, *info.outputs) if signal.name == name), None)
+    return next((signal for signal in info.signals if signal.name == name), None)
 
 
 def _require_own_columns(tables: Table, specs: dict[str, SignalSpec]) -> None:

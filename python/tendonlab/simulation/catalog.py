@@ -39,6 +39,11 @@ class SystemInfo(_core.SystemInfo):
         """The element of that name; ParameterError, with the nearest name, where there is none."""
         return _named(self._elements, name, f"element of {self.kind}")
 
+    @property
+    def signals(self) -> tuple[InputInfo | OutputInfo, ...]:
+        """Inputs, then outputs."""
+        return (*self.inputs, *self.outputs)
+
     def with_role(self, role: str) -> ParameterInfo | None:
         """The parameter in that role, "command_gain" or "payload"; None where the system has none."""
         return next((p for p in self.parameters if p.role == role), None)
