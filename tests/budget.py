@@ -10,6 +10,8 @@ import pytest
 BUDGET = 5.0  # s of CPU time of a test that is neither `slow` nor allowed more by the marker `cpu`
 LOOP_SECONDS = 0.12  # of CPU time of the loop in `slowness`, on a quiet core of 2024
 
+OVER = "over budget"  # the property of a report that carries `excess`
+
 _shared_seconds = 0.0
 
 

@@ -6,6 +6,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import pytest
@@ -41,12 +42,22 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
-    """A test that takes more CPU time than its budget fails."""
+    """Note a test that takes more CPU time than its budget. CPU time on a busy machine decides no verdict."""
     before = budget.cpu_seconds()
     yield
-    told = budget.excess(item, budget.cpu_seconds() - before)
-    if told:
-        pytest.fail(told)
+    message = budget.excess(item, budget.cpu_seconds() - before)
+    if message:
+        item.user_properties.append((budget.OVER, message))
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """List the tests over their budget, whatever process ran them."""
+    reports = [r for kind in ("passed", "failed") for r in terminalreporter.stats.get(kind, []) if r.when == "call"]
+    over = [f"{r.nodeid}: {message}" for r in reports for key, message in r.user_properties if key == budget.OVER]
+    if over:
+        terminalreporter.section("tests over their budget of CPU time")
+        for line in sorted(over):
+            terminalreporter.line(line)
 
 
 @pytest.fixture(autouse=True)

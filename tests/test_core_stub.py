@@ -68,6 +68,11 @@ def test_every_member_of_a_class_is_in_the_stub() -> None:
     for node in STUB.body:
         if isinstance(node, ast.ClassDef) and node.name not in ONLY_TYPES:
             declared = {item.name for item in node.body if isinstance(item, ast.FunctionDef)} - {"__init__"}
+            declared |= {
+                item.target.id
+                for item in node.body
+                if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name)
+            }
             assert declared == {name for name in vars(getattr(_core, node.name)) if not name.startswith("_")}
 
 

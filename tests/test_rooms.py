@@ -30,7 +30,7 @@ UPWARD: dict[tuple[str, str], str] = {}
 CIRCLES = {"report": "a Diagnosis draws itself: its methods load the plots and pages that show it"}
 
 # The same in C++. Files of a room that stand in the folder of another are listed by name.
-CPP_ROOMS = ("core", "laws", "mechanics", "systems", "integrate", "models", "identify", "bindings")
+CPP_ROOMS = ("core", "mechanics", "laws", "systems", "integrate", "models", "identify", "bindings")
 LAWS = {"friction", "transmission", "actuation", "sensing", "loading"}
 MODELS = {"model.hpp", "model.cpp", "model_of.hpp", "instances.hpp", "instance.cpp.in"}  # a system joined to a stepper
 

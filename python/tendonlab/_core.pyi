@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from types import ModuleType
-from typing import Any, overload
+from typing import Any, Final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,141 +37,81 @@ sheath: Laws
 transmission: Laws
 
 class DimensionInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def rotary(self) -> str: ...
-    @property
-    def linear(self) -> str: ...
-    @property
-    def scale(self) -> str | None: ...
-    @property
-    def per(self) -> str | None: ...
+    name: Final[str]
+    rotary: Final[str]
+    linear: Final[str]
+    scale: Final[str | None]
+    per: Final[str | None]
 
 class InputInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def meaning(self) -> str: ...
-    @property
-    def dimension(self) -> str: ...
-    @property
-    def required(self) -> bool: ...
-    @property
-    def between(self) -> str: ...
-    @property
-    def replaced_by(self) -> str | None: ...
-    @property
-    def warn_if_absent(self) -> bool: ...
+    name: Final[str]
+    meaning: Final[str]
+    dimension: Final[str]
+    required: Final[bool]
+    between: Final[str]
+    replaced_by: Final[str | None]
+    warn_if_absent: Final[bool]
 
 class OutputInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def meaning(self) -> str: ...
-    @property
-    def dimension(self) -> str: ...
-    @property
-    def axis(self) -> int | None: ...
+    name: Final[str]
+    meaning: Final[str]
+    dimension: Final[str]
+    axis: Final[int | None]
 
 class PortInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def element(self) -> str: ...
-    @property
-    def load(self) -> str: ...
+    name: Final[str]
+    element: Final[str]
+    load: Final[str]
 
 class ElementInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def axis(self) -> str | None: ...
-    @property
-    def place(self) -> str: ...
-    @property
-    def acts_on(self) -> str: ...
+    name: Final[str]
+    axis: Final[str | None]
+    place: Final[str]
+    acts_on: Final[str]
 
 class ParameterInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def element(self) -> str | None: ...
-    @property
-    def effect(self) -> str | None: ...
-    @property
-    def own(self) -> str: ...
-    @property
-    def dimension(self) -> str: ...
-    @property
-    def purpose(self) -> str: ...
-    @property
-    def role(self) -> str | None: ...
-    @property
-    def typical(self) -> float: ...
-    @property
-    def lower(self) -> float: ...
-    @property
-    def upper(self) -> float: ...
-    @property
-    def meaning(self) -> str: ...
-    @property
-    def amplitude(self) -> bool: ...
+    name: Final[str]
+    element: Final[str | None]
+    effect: Final[str | None]
+    own: Final[str]
+    dimension: Final[str]
+    purpose: Final[str]
+    role: Final[str | None]
+    typical: Final[float]
+    lower: Final[float]
+    upper: Final[float]
+    meaning: Final[str]
+    amplitude: Final[bool]
 
 class EffectInfo:
-    @property
-    def name(self) -> str: ...
-    @property
-    def element(self) -> str: ...
-    @property
-    def effect(self) -> str: ...
-    @property
-    def noun(self) -> str: ...
-    @property
-    def phrase(self) -> str: ...
-    @property
-    def equation(self) -> str: ...
-    @property
-    def source(self) -> str: ...
-    @property
-    def summary(self) -> str: ...
-    @property
-    def parameters(self) -> tuple[str, ...]: ...
-    @property
-    def needs(self) -> tuple[str, ...]: ...
-    @property
-    def roles(self) -> int: ...
-    @property
-    def structural(self) -> bool: ...
+    name: Final[str]
+    element: Final[str]
+    effect: Final[str]
+    noun: Final[str]
+    phrase: Final[str]
+    equation: Final[str]
+    source: Final[str]
+    summary: Final[str]
+    parameters: Final[tuple[str, ...]]
+    needs: Final[tuple[str, ...]]
+    roles: Final[int]
+    structural: Final[bool]
 
 class SystemInfo:
     def __init__(self, kind: str) -> None: ...
-    @property
-    def kind(self) -> str: ...
-    @property
-    def equation(self) -> str: ...
-    @property
-    def dof(self) -> int: ...
-    @property
-    def commanded(self) -> bool: ...
-    @property
-    def sampled(self) -> bool: ...
-    @property
-    def steady(self) -> bool: ...
-    @property
-    def default_nominal_effects(self) -> tuple[str, ...]: ...
-    @property
-    def inputs(self) -> tuple[InputInfo, ...]: ...
-    @property
-    def outputs(self) -> tuple[OutputInfo, ...]: ...
-    @property
-    def parameters(self) -> tuple[ParameterInfo, ...]: ...
-    @property
-    def effects(self) -> tuple[EffectInfo, ...]: ...
-    @property
-    def elements(self) -> tuple[ElementInfo, ...]: ...
-    @property
-    def ports(self) -> tuple[PortInfo, ...]: ...
+    kind: Final[str]
+    equation: Final[str]
+    dof: Final[int]
+    commanded: Final[bool]
+    sampled: Final[bool]
+    steady: Final[bool]
+    default_nominal_effects: Final[tuple[str, ...]]
+    inputs: Final[tuple[InputInfo, ...]]
+    outputs: Final[tuple[OutputInfo, ...]]
+    parameters: Final[tuple[ParameterInfo, ...]]
+    effects: Final[tuple[EffectInfo, ...]]
+    elements: Final[tuple[ElementInfo, ...]]
+    ports: Final[tuple[PortInfo, ...]]
 
 def dimensions() -> dict[str, DimensionInfo]: ...
 def laws() -> tuple[tuple[str, str], ...]: ...

@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 from sealed_cases import Drawn
 
-from tendonlab.blind import commands, draw, run, runner, score
+from tendonlab.blind import commands, draw, drawing, run, runner, score
 from tendonlab.blind.commands import add_parser
 from tendonlab.blind.drawing import plan
 from tendonlab.blind.rig import EFFECTS
@@ -189,7 +189,7 @@ def test_flow_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         return draw(seed, min(count, 2), out, sealed=sealed, jobs=1, num_samples=120, step=2e-4, progress=False)
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(commands, "draw", draw_less)
+    monkeypatch.setattr(drawing, "draw", draw_less)
     lines = re.findall(r"^python -m tendonlab\.blind (.*)$", PAGE.read_text(encoding="utf-8"), re.M)
     assert [line.split()[0] for line in lines] == ["draw", "run", "score"]
     fake_reports(monkeypatch, Path(shlex.split(lines[2])[1]), right=True)

@@ -248,7 +248,7 @@ def test_broken_dataset_is_an_error_that_says_where(draft, write, mutate, messag
 def test_amperes_need_a_torque_constant(two_inertia, write):
     """two_inertia has none, so its motor_torque is a torque."""
     two_inertia.toml["signals"]["motor_torque"]["unit"] = "A"
-    with pytest.raises(DatasetError, match=r"motor_torque.unit: unit 'A': two_inertia has no torque_constant"):
+    with pytest.raises(DatasetError, match=r"motor_torque.unit: unit 'A': no parameter of two_inertia converts it"):
         load(write(two_inertia))
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from examples import T, example, with_effect
 from integrate.rig import Run, relative, run
-from tendonlab.simulation.catalog import LEVEL, REFINES, Parameter, kinds, system_info
+from tendonlab.simulation.catalog import LEVEL, REFINES, ParameterInfo, kinds, system_info
 from tendonlab.simulation.system import System
 
 SLOWEST = ("cable_joint", "ccsrm")  # simulated for 0.3 s only, which holds reversals as well
@@ -50,7 +50,7 @@ def simulate(system: System, *, by: Sequence[str] = (), tolerance: float = TOLER
     return run(system, T[:samples], inputs, kind=of.between, by=by, tolerance=tolerance)
 
 
-def difference(system: System, row: Parameter, step: float) -> np.ndarray:
+def difference(system: System, row: ParameterInfo, step: float) -> np.ndarray:
     """Derivative of all outputs by a parameter, (outputs, samples), from values inside its bounds."""
     value = system.parameters[row.name]
     stencil = next(of for of in STENCILS if all(row.lower <= value + k * step <= row.upper for k in of))

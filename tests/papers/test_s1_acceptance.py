@@ -122,7 +122,7 @@ def test_a5_reducer() -> None:
         Reducer(efficiency=0.4)
     locked = Reducer(efficiency=0.4, allow_self_locking=True)
     assert locked.input_torque(1.0, -1.0) < 0  # the load alone does not move it: the motor has to help
-    with pytest.raises(tl.NumericalError, match="none balances"):
+    with pytest.raises(tl.NumericalError, match="no effort balances"):
         locked.output_torque(1.0, -1.0)
 
 

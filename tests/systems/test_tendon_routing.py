@@ -106,13 +106,17 @@ SPEED, TORQUE = ("v", "rad/s"), ("c", "N*m")
 
 
 def write(folder: Path, signals: dict[str, tuple[str, str]], **named: float) -> Path:
-    """A rig with cables that cross no other joint; `named` adds to its parameters. `signals`: column and unit."""
+    """A rig with cables that cross no other joint; `named` adds to its parameters. `signals`: what each one carries and
+    its unit. Outputs have columns of their own."""
     time = np.linspace(0.0, 4.0, 81)
     speed = np.cos(2 * time)
     frame = pd.DataFrame({"t": time, "v": speed, "c": 0.1 * np.sin(time) + 0.02 * np.sign(speed)})
     lines = ['format = "tendonlab-dataset/1"', 'name = "two"', "[system]", 'kind = "tendon_routing"']
     lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in {**PLAIN, **named}.items())]
-    lines += ["[signals]", *(f'{name} = {{ column = "{c}", unit = "{u}" }}' for name, (c, u) in signals.items())]
+    columns = {name: name if name.startswith("motor_torque") else c for name, (c, _) in signals.items()}
+    frame = frame.assign(**{name: frame[signals[name][0]] for name in columns.values() if name in signals})
+    lines += ["[signals]"]
+    lines += [f'{name} = {{ column = "{columns[name]}", unit = "{u}" }}' for name, (_, u) in signals.items()]
     for k in range(4):
         frame.to_csv(folder / f"{k}.csv", index=False)
         lines += ["[[experiments]]", f'name = "{k}"', f'file = "{k}.csv"']
@@ -188,7 +192,7 @@ def test_a_driven_pulley_without_radius_is_refused() -> None:
 
 def test_a_loss_that_outgrows_its_tension_is_refused() -> None:
     of = system(example_device(), {"cable:load_dependence": {"load_dependence": 1.0}})
-    with pytest.raises(tl.NumericalError, match="none balances"):
+    with pytest.raises(tl.NumericalError, match="no effort balances"):
         of.simulate(log(example_device()))
 
 

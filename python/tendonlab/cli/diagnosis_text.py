@@ -6,7 +6,7 @@ from tendonlab.cli.text import bullets, table, wrapped
 from tendonlab.report.blocks import Block, Candidates, Cell, Points, Table, Text
 from tendonlab.report.diagnosis import Diagnosis, EffectFinding
 from tendonlab.report.numbers import number, prefixed, probability, span
-from tendonlab.report.sections import SECTIONS, Section
+from tendonlab.report.outline import SECTIONS, Section
 from tendonlab.report.words import parameter_words
 
 _BAR = 20  # columns of a probability of 1

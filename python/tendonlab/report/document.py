@@ -46,7 +46,7 @@ def _environment() -> Environment:
 
 def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
     """The text of report.html: everything inline, all text escaped. `pictures` comes from `report.figures.draw_all`."""
-    from tendonlab.report.sections import SECTIONS
+    from tendonlab.report.outline import SECTIONS
 
     return (
         _environment()
