@@ -44,6 +44,13 @@ def dependants(kind: str, effect: str) -> set[str]:
     return {e.name for e in here if effect in e.needs or (alone and e.roles & REFINES)}
 
 
+def below_one(system: System, name: str) -> System:
+    """The same with that share below 1: at 1 nothing of the dry friction is left to stick, a kink of the model."""
+    row = system.info.parameter(name)
+    full = row.purpose == "share" and system.parameters[name] == row.upper
+    return system.with_parameters({name: 0.9}) if full else system
+
+
 def simulate(system: System, *, by: Sequence[str] = (), tolerance: float = TOLERANCE) -> Run:
     of, samples = example(system.kind), 61 if system.kind in SLOWEST else T.size
     inputs = {name: values[:samples] for name, values in of.inputs.items()}
@@ -75,9 +82,11 @@ def test_derivatives_by_all_its_parameters_match_differences(kind: str, effect: 
     assert exact.events > 0 or not example(kind).events
     assert list(exact.gradient) == list(by) != []
     for name in by:
+        there = below_one(system, name)
+        of = exact if there == system else simulate(there, by=[name])
         share = 0.1 * STEP if system.info.sampled else STEP  # a sampled system has no error of a stepper
-        step = share * (abs(system.parameters[name]) or 1.0)
-        answer = difference(system, system.info.parameter(name), step)
-        for got, wanted, output in zip(exact.gradient[name], answer, exact.table, strict=True):
+        step = share * (abs(there.parameters[name]) or 1.0)
+        answer = difference(there, system.info.parameter(name), step)
+        for got, wanted, output in zip(of.gradient[name], answer, of.table, strict=True):
             noise = TOLERANCE * np.sqrt(np.mean(output**2)) / step
             assert relative(got, wanted) < 1e-4 or np.max(abs(got - wanted)) < noise, name
