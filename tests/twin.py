@@ -27,6 +27,6 @@ def run_demo(folder: Path) -> TwinDiagnosis:
     """`tendonlab demo` in an empty folder, in a process of its own."""
     command = [sys.executable, "-c", HOOK + DEMO]
     with shared():
-        printed = subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8", timeout=600, check=False)
+        printed = subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8", timeout=1800, check=False)
     assert printed.returncode == 0, printed.stderr
     return TwinDiagnosis(folder, printed, diagnose(tl.load(bundled())))
