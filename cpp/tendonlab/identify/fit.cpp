@@ -44,22 +44,23 @@ class Coordinates {
 /// Hands one experiment to Ceres. No exception may cross it: the first one is kept, and told after the solve.
 class TaskCost final : public ceres::CostFunction {
  public:
-  TaskCost(const Problem& problem, std::size_t task, const Cancel* stop, std::exception_ptr& first)
-      : prediction(problem, task), cancel(stop), thrown(first) {
-    set_num_residuals(static_cast<int>(problem.tasks[task].whitening->rows()));
-    if (prediction.num_free() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(prediction.num_free()));
-    if (prediction.num_initial() > 0)
-      mutable_parameter_block_sizes()->push_back(static_cast<int>(prediction.num_initial()));
+  TaskCost(Remembered& predicted, Eigen::Index rows, const Cancel* stop, std::exception_ptr& first)
+      : prediction(predicted), cancel(stop), thrown(first) {
+    const Prediction& of = prediction.of();
+    set_num_residuals(static_cast<int>(rows));
+    if (of.num_free() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.num_free()));
+    if (of.num_initial() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.num_initial()));
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     if (cancel && cancel->load()) return false;
     try {
-      const std::size_t free_blocks = prediction.num_free() > 0 ? 1 : 0;
+      const Prediction& of = prediction.of();
+      const std::size_t free_blocks = of.num_free() > 0 ? 1 : 0;
       const auto view = [&](std::size_t block, Eigen::Index size) {
         return size > 0 ? Vector(Eigen::Map<const Vector>(blocks[block], size)) : Vector();
       };
-      const Linearised at = prediction.at(view(0, prediction.num_free()), view(free_blocks, prediction.num_initial()),
-                                          jacobians != nullptr);
+      const Linearised& at =
+          prediction.at(view(0, of.num_free()), view(free_blocks, of.num_initial()), jacobians != nullptr);
       Eigen::Map<Vector>(residuals, num_residuals()) = at.residual;
       const auto fill = [&](std::size_t block, const RowMatrix& derivative) {
         if (jacobians && derivative.cols() > 0 && jacobians[block])
@@ -75,7 +76,7 @@ class TaskCost final : public ceres::CostFunction {
   }
 
  private:
-  Prediction prediction;
+  Remembered& prediction;
   const Cancel* cancel;
   std::exception_ptr& thrown;
 };
@@ -161,7 +162,8 @@ ceres::Solver::Options solver_options(const Options& options, Vector& x, Coordin
   with.function_tolerance = options.tolerance;
   with.parameter_tolerance = options.tolerance;
   with.gradient_tolerance = 1e-12;
-  with.num_threads = 1;  // same bits; callers run several fits at once
+  with.line_search_interpolation_type = ceres::QUADRATIC;  // a cubic one needs derivatives wherever a step ends
+  with.num_threads = 1;                                    // same bits; callers run several fits at once
   with.logging_type = ceres::SILENT;
   with.update_state_every_iteration = true;  // for Watch
   with.linear_solver_type = ceres::DENSE_QR;
@@ -233,18 +235,23 @@ Vector start_of_free(const Problem& problem) {
     x(static_cast<Eigen::Index>(k)) = problem.free[k].coordinate(problem.free[k].start);
   return x;
 }
-Coordinates start_of_states(const Problem& problem) {
+using Predictions = std::vector<Remembered>;
+Predictions predictions_of(const Problem& problem) {
+  Predictions all;
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) all.emplace_back(problem, e);
+  return all;
+}
+Coordinates start_of_states(const Problem& problem, const Predictions& predictions) {
   Coordinates z;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
-    const Prediction prediction(problem, e);
-    z.append(problem.initial.empty() ? Vector(Vector::Zero(prediction.num_initial()))
-                                     : prediction.coordinates(problem.initial[e]));
+    const Prediction& of = predictions[e].of();
+    z.append(problem.initial.empty() ? Vector(Vector::Zero(of.num_initial())) : of.coordinates(problem.initial[e]));
   }
   return z;
 }
 
 /// Everything about the point (x, z) that a caller asks for.
-Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
+Result describe(const Problem& problem, Predictions& predictions, const Vector& x, const Coordinates& z) {
   Result of;
   of.at_bound.assign(problem.free.size(), false);
   for (const int k : on_bound(problem, x)) of.at_bound[static_cast<std::size_t>(k)] = true;
@@ -258,9 +265,8 @@ Result describe(const Problem& problem, const Vector& x, const Coordinates& z) {
   }
   of.cost = of.prior_cost;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
-    const Prediction prediction(problem, e);
-    of.tasks.push_back(prediction.at(x, z[e], true));
-    of.initial.push_back(prediction.states(z[e]));
+    of.tasks.push_back(predictions[e].at(x, z[e], true));
+    of.initial.push_back(predictions[e].of().states(z[e]));
     of.prior_cost += 0.5 * z[e].squaredNorm();
     of.cost += 0.5 * (z[e].squaredNorm() + of.tasks.back().residual.squaredNorm());
   }
@@ -292,8 +298,8 @@ void hold(const Places& held, Vector& x, ceres::Problem& in) {
 }
 /// Solves to the end. Ceres projects its steps on the bounds and crawls along them: what is pressed against one is
 /// fixed there while the rest is fitted, until nothing wants to move.
-Result settle(const Problem& problem, const Options& options, ceres::Problem& solved, Vector& x, Coordinates& z,
-              const std::exception_ptr& thrown) {
+Result settle(const Problem& problem, Predictions& predictions, const Options& options, ceres::Problem& solved,
+              Vector& x, Coordinates& z, const std::exception_ptr& thrown) {
   Places held;
   int done = 0, patience = along_bounds;
   for (int round = 1;; ++round) {
@@ -305,7 +311,7 @@ Result settle(const Problem& problem, const Options& options, ceres::Problem& so
     ceres::Solver::Summary summary;
     ceres::Solve(with, &solved, &summary);
     x = watch.best_x, z = watch.best_z, done += watch.iterations;
-    Result of = describe(problem, x, z);
+    Result of = describe(problem, predictions, x, z);
     const Places against = pressed(problem, x, of);
     const bool ends = done >= options.max_iterations || round == most_rounds ||
                       summary.termination_type == ceres::FAILURE || (options.cancel && options.cancel->load());
@@ -339,17 +345,18 @@ Free Free::started(double value) const {
 
 Result linearise(const Problem& problem) {
   require_sound(problem);
-  return describe(problem, start_of_free(problem), start_of_states(problem));
+  Predictions predictions = predictions_of(problem);
+  return describe(problem, predictions, start_of_free(problem), start_of_states(problem, predictions));
 }
 
 Result fit(const Problem& problem, const Options& options) {
   require_sound(problem);
   require_within("max_iterations", options.max_iterations, 0, 1e6, "");
   require_within("tolerance", options.tolerance, 1e-15, 1.0, "");
+  Predictions predictions = predictions_of(problem);
   Vector x = start_of_free(problem);
-  Coordinates z = start_of_states(problem);
-  for (std::size_t e = 0; e < problem.tasks.size(); ++e)
-    Prediction(problem, e).at(x, z[e], false);  // throws at the start
+  Coordinates z = start_of_states(problem, predictions);
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) predictions[e].at(x, z[e], false);  // throws at the start
   std::exception_ptr thrown;
   ceres::Problem solved;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
@@ -358,11 +365,12 @@ Result fit(const Problem& problem, const Options& options) {
     if (z[e].size() > 0) blocks.push_back(z[e].data());
     if (blocks.empty())
       throw ParameterError("free: none; expected at least one free parameter or initial state a task");
-    solved.AddResidualBlock(new TaskCost(problem, e, options.cancel, thrown), nullptr, blocks);
+    const auto rows = problem.tasks[e].whitening->rows();
+    solved.AddResidualBlock(new TaskCost(predictions[e], rows, options.cancel, thrown), nullptr, blocks);
   }
   add_priors(problem, x, z, solved);
   add_bounds(problem, x, solved);
   silence_log();
-  return settle(problem, options, solved, x, z, thrown);
+  return settle(problem, predictions, options, solved, x, z, thrown);
 }
 }  // namespace tendonlab::identify

@@ -169,4 +169,14 @@ Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bo
                                   "may be far from its data, or the tolerance too large"));
   return out;
 }
+
+const Linearised& Remembered::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) {
+  if (sloped.is(x, z)) return sloped.there;
+  if (!with_derivatives && plain.is(x, z)) return plain.there;
+  Point& to = with_derivatives ? sloped : plain;
+  to.known = false;
+  to.there = prediction.at(x, z, with_derivatives);
+  to.x = x, to.z = z, to.known = true;
+  return to.there;
+}
 }  // namespace tendonlab::identify

@@ -33,4 +33,24 @@ class Prediction {
   std::vector<integrate::Seed> seeds;  ///< of the moving parameters, the states, other scattered ones
   std::vector<std::pair<std::size_t, Eigen::Index>> column_of;  ///< of each parameter that is differentiated
 };
+
+/// A prediction that remembers the points where it was last made, with derivatives and without: a solver asks for the
+/// same point several times.
+class Remembered {
+ public:
+  Remembered(const Problem& problem, std::size_t task) : prediction(problem, task) {}
+  const Prediction& of() const { return prediction; }
+  /// As Prediction::at. The reference holds until the next call.
+  const Linearised& at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives);
+
+ private:
+  struct Point {
+    Eigen::VectorXd x, z;
+    Linearised there;
+    bool known = false;
+    bool is(const Eigen::VectorXd& at_x, const Eigen::VectorXd& at_z) const { return known && x == at_x && z == at_z; }
+  };
+  Prediction prediction;
+  Point plain, sloped;
+};
 }  // namespace tendonlab::identify
