@@ -18,7 +18,7 @@ class Law:
     summary: str
     roles: tuple[str, ...]
     noun: str
-    parameters: tuple[Mapping[str, Any], ...]
+    parameters: tuple[ParameterInfo, ...]
 
     def __init__(self, **parameters: float) -> None: ...
     def __getattr__(self, name: str) -> Any: ...

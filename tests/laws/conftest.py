@@ -20,10 +20,10 @@ class Case:
 
     @property
     def amplitudes(self) -> tuple[str, ...]:
-        return tuple(p["name"] for p in self.law.parameters if p["purpose"] in ("amplitude", "share"))
+        return tuple(p.name for p in self.law.parameters if p.purpose in ("amplitude", "share"))
 
     def make(self, **changes: float) -> Any:
-        return self.law(**{**{p["name"]: p["typical"] for p in self.law.parameters}, **changes})
+        return self.law(**{**{p.name: p.typical for p in self.law.parameters}, **changes})
 
     def off(self) -> Any:
         return self.make(**dict.fromkeys(self.amplitudes, 0.0))

@@ -1,5 +1,7 @@
 """What holds for every registered law, whatever its formula; a new one is tested before its author writes a test."""
 
+import copy
+import inspect
 import pickle
 from typing import Any
 
@@ -9,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis.extra.numpy import arrays
 from hypothesis.strategies import floats
 
+from tendonlab import _core
 from tendonlab.errors import ParameterError
 
 VELOCITY = np.linspace(-2.0, 2.0, 41)
@@ -27,9 +30,9 @@ def test_it_says_what_it_is(law: Any) -> None:
     assert one.roles
     assert law.amplitudes, "no value switches it off"
     for p in one.parameters:
-        assert p["name"] in one.__doc__
-        assert p["meaning"] in one.__doc__
-        assert p["lower"] <= p["typical"] <= p["upper"]
+        assert p.name in one.__doc__
+        assert p.meaning in one.__doc__
+        assert p.lower <= p.typical <= p.upper
     assert one.equation in one.__doc__
     assert one.source in one.__doc__
 
@@ -39,31 +42,31 @@ def test_its_parameters_can_be_read_and_kept(law: Any) -> None:
     assert repr(one).startswith(f"{law.law.__name__}(")
     again = pickle.loads(pickle.dumps(one))
     for p in law.law.parameters:
-        assert getattr(one, p["name"]) == getattr(again, p["name"]) == p["typical"]
+        assert getattr(one, p.name) == getattr(again, p.name) == p.typical
         with pytest.raises(AttributeError):
-            setattr(one, p["name"], 0.0)
+            setattr(one, p.name, 0.0)
 
 
 def test_a_value_outside_its_bounds_is_refused(law: Any) -> None:
     for p in law.law.parameters:
-        for wrong in (np.nan, np.inf, p["lower"] - 1.0):
-            with pytest.raises(ParameterError, match=rf"{p['name']} = .*: expected a value in \[.*\] .+"):
-                law.make(**{p["name"]: wrong})
+        for wrong in (np.nan, np.inf, p.lower - 1.0):
+            with pytest.raises(ParameterError, match=rf"{p.name} = .*: expected a value in \[.*\] .+"):
+                law.make(**{p.name: wrong})
 
 
 def test_a_misspelt_keyword_is_answered_with_the_nearest(law: Any) -> None:
-    known = law.law.parameters[0]["name"]
+    known = law.law.parameters[0].name
     with pytest.raises(ParameterError, match=f"{known}x: {law.law.__name__} has no such parameter; did you mean"):
         law.make(**{known + "x": 1.0})
 
 
 def test_a_missing_keyword_is_named_with_its_meaning(law: Any) -> None:
     for p in law.law.parameters:
-        others = {q["name"]: q["typical"] for q in law.law.parameters if q["name"] != p["name"]}
-        if p["purpose"] == "share":
-            assert getattr(law.law(**others), p["name"]) == p["typical"]
+        others = {q.name: q.typical for q in law.law.parameters if q.name != p.name}
+        if p.purpose == "share":
+            assert getattr(law.law(**others), p.name) == p.typical
         else:
-            with pytest.raises(ParameterError, match=f"{p['name']} is missing: expected {p['meaning']}"):
+            with pytest.raises(ParameterError, match=f"{p.name} is missing: expected {p.meaning}"):
                 law.law(**others)
 
 
@@ -110,7 +113,7 @@ def test_on_differs_from_off(law: Any) -> None:
 def test_each_amplitude_alone_switches_it_on(law: Any) -> None:
     off = behind(law, law.off())
     for name in law.amplitudes:
-        typical = next(p["typical"] for p in law.law.parameters if p["name"] == name)
+        typical = next(p.typical for p in law.law.parameters if p.name == name)
         alone = behind(law, law.make(**{**dict.fromkeys(law.amplitudes, 0.0), name: typical}))
         assert any(not np.array_equal(alone[answer], off[answer]) for answer in off), name
 
@@ -126,9 +129,9 @@ def test_friction_never_adds_energy(law: Any, velocity: np.ndarray) -> None:
 @pytest.mark.roles("factor")
 def test_a_factor_keeps_the_level_a_magnitude(law: Any) -> None:
     for p in law.law.parameters:
-        if p["dimension"] == "ratio":
-            for extreme in (p["lower"], p["upper"]):
-                assert np.all(law.make(**{p["name"]: extreme}).factor(**{**PORT, "wrap_angle": 1.2}) >= 0)
+        if p.dimension == "ratio":
+            for extreme in (p.lower, p.upper):
+                assert np.all(law.make(**{p.name: extreme}).factor(**{**PORT, "wrap_angle": 1.2}) >= 0)
 
 
 @pytest.mark.roles("memory")
@@ -164,3 +167,29 @@ def test_a_motion_that_is_not_finite_is_refused(law: Any) -> None:
     for role in set(law.law.roles) & {"level", "factor", "force"}:
         with pytest.raises(ParameterError, match="velocity = nan: expected a value in"):
             getattr(law.make(), role)(velocity=np.array([0.0, np.nan]))
+
+
+def test_positional_numbers_are_refused_with_the_keyword_to_use(law: Any) -> None:
+    known = law.law.parameters[0].name
+    with pytest.raises(ParameterError, match=rf"{law.law.__name__}\(1\.0\): expected keywords, .*\({known}=…\)"):
+        law.law(1.0)
+
+
+def test_laws_of_equal_numbers_are_equal(law: Any) -> None:
+    name = law.amplitudes[0]
+    one, again, off = law.make(), copy.copy(law.make()), law.make(**{name: 0.0})
+    assert one == again != off
+    assert hash(one) == hash(again)
+    assert type(again) is law.law
+    assert isinstance(one, _core.Law)
+
+
+def test_signatures_name_the_arguments(law: Any) -> None:
+    assert list(inspect.signature(law.law).parameters) == [p.name for p in law.law.parameters]
+    methods = [name for name, of in vars(law.law).items() if callable(of) and not name.startswith("_")]
+    for name in methods:
+        of = getattr(law.make(), name)
+        assert inspect.signature(of).parameters
+        assert "->" not in of.__doc__
+        with pytest.raises(ParameterError, match="mistaken: expected one of"):
+            of(**dict.fromkeys(inspect.signature(of).parameters, 1.0), mistaken=1.0)

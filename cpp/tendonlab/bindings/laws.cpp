@@ -1,8 +1,9 @@
-// Every law of the library as a Python class, made from its table and its roles: a new law needs no line here.
-#include <sstream>
+// Every law of the library as a Python class, made from its facts and its roles: a new law needs no line here.
+#include <functional>
 
 #include "tendonlab/actuation/all.hpp"
-#include "tendonlab/bindings/law_methods.hpp"
+#include "tendonlab/bindings/columns.hpp"
+#include "tendonlab/bindings/law_box.hpp"
 #include "tendonlab/friction/all.hpp"
 #include "tendonlab/loading/all.hpp"
 #include "tendonlab/sensing/all.hpp"
@@ -10,6 +11,14 @@
 
 namespace tendonlab::bindings {
 namespace {
+/// A law as Python holds it: one C++ class for all of them, with a Python class each. Facts live as long as the
+/// program.
+struct Law {
+  const LawFacts* facts;
+  Numbers values;
+  std::unique_ptr<const LawBox> box = facts->make(values);
+};
+
 std::string pascal_case(std::string_view name) {
   std::string out;
   bool starts = true;
@@ -20,160 +29,299 @@ std::string pascal_case(std::string_view name) {
   return out;
 }
 
-template <class L>
-std::string describe() {
-  std::ostringstream text;
-  text << L::summary << "\n\n    " << L::equation << "    (" << L::source
-       << ")\n\nParameters, rotary or linear axis:\n";
-  for_each_parameter<L>([&](const auto& p) {
-    text << "  " << p.name << ": " << p.meaning << ", " << both_units(p.dimension) << ", in [" << p.lower << ", "
-         << p.upper << "]";
-    if (p.purpose == Purpose::share) text << ", " << p.typical << " if not given";
-    text << "\n";
-  });
-  return text.str();
-}
+// Construction, and what follows from the numbers of a law
 
-double number(double field) {
-  return field;
-}
-double number(const Divisor<double>& field) {
-  return field.value;
-}
-
-template <class L>
-[[noreturn]] void refuse_unknown(const std::string& name) {
+/// Comes before missing ones are looked for, so that a misspelt keyword is not reported as a missing one.
+void refuse_unknown(const LawFacts& of, const py::dict& given) {
   py::list known;
-  for_each_parameter<L>([&](const auto& p) { known.append(std::string(p.name)); });
-  const py::list near = py::module_::import("difflib").attr("get_close_matches")(name, known, 1, 0.0);
-  throw ParameterError(sentence(name, ": ", pascal_case(L::name), " has no such parameter; did you mean ",
-                                near[0].template cast<std::string>(), "?"));
-}
-template <class L>
-L from_keywords(const py::dict& given) {
-  L law{};
-  std::size_t used = 0;
-  for_each_parameter<L>([&](const auto& p) {
-    const py::str key{std::string(p.name)};
-    if (!given.contains(key) && p.purpose != Purpose::share)
-      throw ParameterError(sentence(p.name, " is missing: expected ", p.meaning, ", ", both_units(p.dimension)));
-    double value = p.typical;
-    if (given.contains(key)) {
-      ++used;
-      try {
-        value = given[key].template cast<double>();
-      } catch (const py::cast_error&) {
-        throw ParameterError(sentence(p.name, " = ", py::repr(given[key]).template cast<std::string>(),
-                                      ": expected a number, ", both_units(p.dimension)));
-      }
+  for (const ParameterInfo& p : of.parameters) known.append(p.name);
+  for (const auto& item : given)
+    if (!known.contains(item.first)) {
+      const py::list near = py::module_::import("difflib").attr("get_close_matches")(item.first, known, 1, 0.0);
+      throw ParameterError(sentence(item.first.cast<std::string>(), ": ", pascal_case(of.name),
+                                    " has no such parameter; did you mean ", near[0].cast<std::string>(), "?"));
     }
-    require_within(p.name, value, p.lower, p.upper, both_units(p.dimension));
-    law.*p.field = value;
-  });
-  return law;
 }
-/// Checks for unknown names first, so that a misspelt keyword is not reported as a missing one.
-template <class L>
-L make(const py::dict& given) {
-  for (const auto& item : given) {
-    const auto name = item.first.cast<std::string>();
-    bool known = false;
-    for_each_parameter<L>([&](const auto& p) { known = known || p.name == name; });
-    if (!known) refuse_unknown<L>(name);
+double number_of(const ParameterInfo& p, const py::object& given) {
+  try {
+    return given.cast<double>();
+  } catch (const py::cast_error&) {
+    throw ParameterError(sentence(p.name, " = ", shown(given), ": expected a number, ", both_units(p.dimension)));
   }
-  return from_keywords<L>(given);
 }
-template <class L>
-py::dict to_keywords(const L& law) {
+Law make(const py::capsule& facts, const py::dict& given) {
+  const LawFacts* of = facts.get_pointer<const LawFacts>();
+  refuse_unknown(*of, given);
+  Numbers values;
+  for (const ParameterInfo& p : of->parameters) {
+    const bool states = given.contains(p.name.c_str());
+    if (!states && p.purpose != Purpose::share)
+      throw ParameterError(sentence(p.name, " is missing: expected ", p.meaning, ", ", both_units(p.dimension)));
+    values.push_back(states ? number_of(p, given[p.name.c_str()]) : p.typical);
+    require_within(p.name, values.back(), p.lower, p.upper, both_units(p.dimension));
+  }
+  return {of, std::move(values)};
+}
+
+py::dict to_keywords(const Law& law) {
   py::dict out;
-  for_each_parameter<L>([&](const auto& p) { out[py::str(std::string(p.name))] = number(law.*p.field); });
+  for (std::size_t i = 0; i < law.values.size(); ++i) out[law.facts->parameters[i].name.c_str()] = law.values[i];
   return out;
 }
-template <class L>
-std::string represent(const L& law) {
+/// A copy is made as the law was: by its class, from keywords.
+py::tuple reduce(const py::object& law) {
+  const py::dict keywords = to_keywords(law.cast<const Law&>());
+  return py::make_tuple(py::module_::import("functools").attr("partial")(py::type::of(law), **keywords), py::tuple());
+}
+std::string represent(const Law& law) {
   std::string inside;
-  for_each_parameter<L>([&](const auto& p) {
-    inside += sentence(inside.empty() ? "" : ", ", p.name, "=",
-                       py::repr(py::float_(number(law.*p.field))).template cast<std::string>());
-  });
-  return pascal_case(L::name) + "(" + inside + ")";
+  for (const auto& item : to_keywords(law))
+    inside += (inside.empty() ? "" : ", ") + item.first.cast<std::string>() + "=" + shown(item.second);
+  return pascal_case(law.facts->name) + "(" + inside + ")";
+}
+bool equal(const Law& law, const py::object& other) {
+  if (!py::isinstance<Law>(other)) return false;
+  const auto& of = other.cast<const Law&>();
+  return of.facts == law.facts && of.values == law.values;
+}
+py::ssize_t hash(const Law& law) {
+  return py::hash(py::make_tuple(law.facts->name, py::tuple(py::cast(law.values))));
 }
 
-template <class L>
-py::tuple table() {
-  const py::object read_only = py::module_::import("types").attr("MappingProxyType");
-  py::list rows;
-  for_each_parameter<L>([&](const auto& p) {
-    rows.append(read_only(py::dict(arg("name") = std::string(p.name), arg("dimension") = p.dimension,
-                                   arg("purpose") = p.purpose, arg("typical") = p.typical, arg("lower") = p.lower,
-                                   arg("upper") = p.upper, arg("meaning") = std::string(p.meaning))));
-  });
-  return py::tuple(rows);
+// Methods
+
+/// A method by its arguments and its answer to their values.
+struct Method {
+  const char* name;
+  Arguments arguments;
+  std::function<py::object(const Law&, const py::dict& given)> answer;
+  std::string does;
+};
+/// The answer sample by sample to arguments that broadcast.
+using OfSample = double (LawBox::*)(const Numbers&) const;
+py::object sampled(const Law& of, OfSample answer, const Columns& columns) {
+  Numbers values(columns.size()), row;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    columns.read(i, row);
+    values[i] = (*of.box.*answer)(row);
+  }
+  return columns.shaped(std::move(values));
 }
-template <class L>
-py::tuple roles() {
+Method over(const Arguments& arguments, const char* name, OfSample answer, std::string does) {
+  const auto call = [arguments, answer](const Law& of, const py::dict& given) {
+    const Columns columns(arguments, given);
+    columns.require_finite(arguments);
+    return sampled(of, answer, columns);
+  };
+  return {name, arguments, call, std::move(does)};
+}
+/// All fields of the port behind the law, by name.
+py::dict motion(const Law& of, const Arguments& fields, const py::dict& given) {
+  const Columns columns(fields, given);
+  columns.require_finite(fields);
+  std::vector<Numbers> behind(fields.size(), Numbers(columns.size()));
+  Numbers row;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    columns.read(i, row);
+    row = of.box->motion(row);
+    for (std::size_t k = 0; k < row.size(); ++k) behind[k][i] = row[k];
+  }
+  py::dict out;
+  for (std::size_t k = 0; k < fields.size(); ++k) out[fields[k].name.c_str()] = columns.shaped(std::move(behind[k]));
+  return out;
+}
+py::object output(const Law& of, const py::dict& given) {
+  const Array effort = Columns::numbers("effort", given["effort"]), level = Columns::numbers("level", given["level"]);
+  if (level.size() != 1) throw ParameterError("level = " + shown(given["level"]) + ": expected a number");
+  return to_array(of.box->output({effort.data(), effort.data() + effort.size()}, level.data()[0]),
+                  {effort.shape(), effort.shape() + effort.ndim()});
+}
+/// A delay shows the signal as it was, straight between its samples, and the first value before them.
+py::object apply(const Law& of, const py::dict& given) {
+  if (!of.facts->delays) return sampled(of, &LawBox::apply, Columns({{"signal"}, {"acceleration"}}, given));
+  const Array signal = Columns::numbers("signal", given["signal"]);
+  if (of.box->lateness() == 0) return signal;
+  if (!given.contains("time") || given["time"].is_none())
+    throw ParameterError("time is missing: expected the instants of the signal, s, to delay it");
+  const Array time = Columns::numbers("time", given["time"]);
+  return py::module_::import("numpy").attr("interp")(time.attr("__sub__")(of.box->lateness()), time, signal);
+}
+
+std::string over_ports(const std::string& does) {
+  return does +
+         " Velocity in rad/s or m/s, position in rad or m, load and preload (of a pretension) in N*m or N, wrap_angle "
+         "in rad; arrays broadcast.";
+}
+void add_friction(const LawFacts& of, const Arguments& port, std::vector<Method>& all) {
+  if (of.plays(role::level))
+    all.push_back(
+        over(port, "level", &LawBox::level, over_ports("Its share of the dry friction level, a magnitude, N*m or N.")));
+  if (of.plays(role::factor))
+    all.push_back(over(port, "factor", &LawBox::factor,
+                       over_ports("The factor by which it multiplies the dry friction level, 1.")));
+  if (!of.plays(role::memory) && of.plays(role::level | role::force))
+    all.push_back(over(
+        port, "force", &LawBox::force,
+        over_ports("Steady force of this law alone against the motion, N*m or N, with sign(velocity), 0 at rest.")));
+}
+void add_memory(const LawFacts& of, std::vector<Method>& all) {
+  if (!of.plays(role::memory)) return;
+  const Arguments moving{{"velocity"}, {"deflection"}, {"level", true}, {"load"}};
+  all.push_back(over(moving, "rate", &LawBox::state_rate,
+                     "Rate of its state `deflection` (rad or m for a bristle), where the dry friction level is "
+                     "`level`, N*m or N; arrays broadcast."));
+  all.push_back(over(moving, "force", &LawBox::state_force,
+                     "Force against the motion, N*m or N, at its state `deflection`, where the dry friction level is "
+                     "`level`; arrays broadcast."));
+}
+void add_motion(const LawFacts& of, const Arguments& port, std::vector<Method>& all) {
+  if (!of.plays(role::motion)) return;
+  all.push_back({"motion", port, [port](const Law& law, const py::dict& given) { return motion(law, port, given); },
+                 over_ports("All fields of the port as the laws behind this one see them, by name.")});
+  all.push_back(
+      {"stretch",
+       {{"position", true}},
+       [port](const Law& law, const py::dict& given) -> py::object { return motion(law, port, given)["position"]; },
+       "The stretch, rad or m, that is left of `position` for the laws behind it."});
+}
+void add_effort(const LawFacts& of, const Arguments& port, std::vector<Method>& all) {
+  if (of.plays(role::gain))
+    all.push_back(over(port, "gain", &LawBox::gain,
+                       over_ports("The factor by which it multiplies the effort that its element passes on, 1.")));
+  if (of.plays(role::output))
+    all.push_back({"output",
+                   {{"effort", true, true}, {"level", true}},
+                   &output,
+                   "The effort behind the law at samples of the `effort` without friction, N*m or N, shape (n,), where "
+                   "the dry friction level is `level`; it begins at the first sample."});
+}
+void add_signal(const LawFacts& of, std::vector<Method>& all) {
+  if (of.roles != 0) return;
+  all.push_back({"apply",
+                 {{"signal", true, true}, {"time", false, false, "None"}, {"acceleration"}},
+                 &apply,
+                 "The signal behind this law, shape of `signal`. A delay needs `time`, s, shape (n,), for signals of "
+                 "shape (n,); an inertia needs the `acceleration` of its drive, rad/s^2 or m/s^2."});
+}
+std::vector<Method> methods_of(const LawFacts& of) {
+  Arguments port;
+  for (const auto& field : of.fields) port.push_back({field});
+  std::vector<Method> all;
+  add_friction(of, port, all);
+  add_memory(of, all);
+  add_motion(of, port, all);
+  add_effort(of, port, all);
+  add_signal(of, all);
+  return all;
+}
+
+// Classes
+
+std::string describe(const LawFacts& of) {
+  std::string text =
+      sentence(of.summary, "\n\n    ", of.equation, "    (", of.source, ")\n\nParameters, rotary or linear axis:\n");
+  for (const ParameterInfo& p : of.parameters) {
+    text +=
+        sentence("  ", p.name, ": ", p.meaning, ", ", both_units(p.dimension), ", in [", p.lower, ", ", p.upper, "]");
+    text += p.purpose == Purpose::share ? sentence(", ", p.typical, " if not given\n") : "\n";
+  }
+  return text;
+}
+py::tuple roles_of(const LawFacts& of) {
+  constexpr std::pair<unsigned, const char*> words[] = {
+      {role::motion, "motion"}, {role::level, "level"}, {role::factor, "factor"}, {role::force, "force"},
+      {role::memory, "memory"}, {role::gain, "gain"},   {role::output, "output"}};
   py::list names;
-  if (plays<L>(role::motion)) names.append("motion");
-  if (plays<L>(role::level)) names.append("level");
-  if (plays<L>(role::factor)) names.append("factor");
-  if (plays<L>(role::force)) names.append("force");
-  if (plays<L>(role::memory)) names.append("memory");
-  if (plays<L>(role::gain)) names.append("gain");
-  if (plays<L>(role::output)) names.append("output");
-  if (L::roles == role::refines) names.append("refines");
-  if (L::roles == 0) names.append("signal");
+  for (const auto& [bit, word] : words)
+    if (of.plays(bit)) names.append(word);
+  if (of.roles == role::refines) names.append("refines");
+  if (of.roles == 0) names.append("signal");
   return py::tuple(names);
 }
-
-struct BindLaw {
-  py::module_& module;
-  template <class L>
-  void operator()(L*) const {
-    py::class_<L> law(module, pascal_case(L::name).c_str(), describe<L>().c_str());
-    law.def(py::init([](const py::kwargs& parameters) { return make<L>(parameters); }));
-    for_each_parameter<L>([&](const auto& p) {
-      law.def_property_readonly(
-          std::string(p.name).c_str(), [field = p.field](const L& of) { return number(of.*field); },
-          sentence(p.meaning, ", ", both_units(p.dimension)).c_str());
-    });
-    law.attr("name") = std::string(L::name);
-    law.attr("noun") = std::string(L::noun);
-    law.attr("equation") = std::string(L::equation);
-    law.attr("source") = std::string(L::source);
-    law.attr("summary") = std::string(L::summary);
-    law.attr("roles") = roles<L>();
-    law.attr("parameters") = table<L>();
-    law.def("__repr__", &represent<L>);
-    law.def(py::pickle(&to_keywords<L>, &make<L>));
-    bind_dry<L>(law);
-    bind_force<L>(law);
-    bind_memory<L>(law);
-    bind_motion<L>(law);
-    bind_output<L>(law);
-    bind_signal<L>(law);
+/// What the class of a law holds before its methods. Without slots its instances take no attributes.
+py::dict namespace_of(const LawFacts& of) {
+  py::dict space;
+  space["__slots__"] = py::tuple(), space["__doc__"] = describe(of);
+  space["name"] = of.name, space["noun"] = of.noun, space["equation"] = of.equation, space["source"] = of.source;
+  space["summary"] = of.summary, space["roles"] = roles_of(of);
+  py::tuple rows(of.parameters.size());
+  for (std::size_t i = 0; i < of.parameters.size(); ++i) {
+    const ParameterInfo& p = of.parameters[i];
+    rows[i] = py::cast(p);
+    space[p.name.c_str()] =
+        py::module_::import("builtins")
+            .attr("property")(py::cpp_function([i](const Law& law) { return law.values[i]; }), py::none(), py::none(),
+                              sentence(p.meaning, ", ", both_units(p.dimension)));
   }
-};
-
-template <class List>
-void bind_group(py::module_& module, const char* group, const char* doc, py::list& registered) {
-  py::module_ inside = module.def_submodule(group, doc);
-  List::for_each(BindLaw{inside});
-  List::for_each([&](auto* law) {
-    registered.append(py::make_tuple(group, std::string(std::remove_pointer_t<decltype(law)>::name)));
-  });
+  space["parameters"] = rows;
+  return space;
+}
+/// A docstring whose head Python reads as the signature, as it does for its own functions.
+std::string signed_words(const std::string& name, const std::string& signature, const std::string& does) {
+  return name + "(" + signature + ")\n--\n\n" + does;
+}
+py::cpp_function bound(const Method& method, const py::object& cls) {
+  const auto call = [method](const Law& of, const py::args& positional, const py::kwargs& given) {
+    return method.answer(of, by_name(method.name, method.arguments, positional, given));
+  };
+  return {call, py::name(method.name), py::is_method(cls),
+          signed_words(method.name, signature_of(method.arguments), method.does).c_str()};
+}
+/// The constructor of a law: that of the base class with the law's facts.
+py::cpp_function constructor(const LawFacts& of, const py::object& base, const py::object& cls) {
+  std::string signature = "self, *";
+  for (const ParameterInfo& p : of.parameters)
+    signature += ", " + p.name + (p.purpose == Purpose::share ? sentence("=", p.typical) : "");
+  const auto call = [&of, base](const py::object& self, const py::args& positional, const py::kwargs& given) {
+    if (!positional.empty())
+      throw ParameterError(sentence(pascal_case(of.name), "(", shown(positional[0]), "): expected keywords, ",
+                                    pascal_case(of.name), "(", of.parameters.front().name, "=…)"));
+    base.attr("__init__")(self, py::capsule(&of), given);
+  };
+  return {call, py::name("__init__"), py::is_method(cls),
+          signed_words("__init__", signature, "Every number is checked.").c_str()};
+}
+py::object class_of(const LawFacts& of, const py::object& base, const py::module_& module) {
+  const std::string name = pascal_case(of.name);
+  py::dict space = namespace_of(of);
+  space["__module__"] = module.attr("__name__"), space["__qualname__"] = name;
+  py::object cls = py::type::of(base)(name, py::make_tuple(base), space);
+  cls.attr("__init__") = constructor(of, base, cls);
+  for (const Method& method : methods_of(of)) cls.attr(method.name) = bound(method, cls);
+  return cls;
+}
+py::object bind_base(py::module_& module) {
+  return py::class_<Law>(module, "Law", "What all law classes share.")
+      .def(py::init(&make))
+      .def("__repr__", &represent)
+      .def("__eq__", &equal)
+      .def("__hash__", &hash)
+      .def("__reduce__", &reduce);
 }
 }  // namespace
 
 void bind_laws(py::module_& module) {
+  py::options options;
+  options.disable_function_signatures();  // those of pybind11 say nothing about keywords
+  const py::object base = bind_base(module);
   py::list registered;
-  bind_group<friction::Every>(module, "friction", "Friction laws.", registered);
-  bind_group<transmission::Every>(module, "transmission", "Laws of cables and gears.", registered);
-  bind_group<Joined<transmission::Sheath, transmission::Tendons>::type>(
-      module, "sheath", "Laws of pretensioned tendons in sheaths.", registered);
-  bind_group<transmission::Ends>(module, "ends", "Laws of the end sections of cables.", registered);
-  bind_group<loading::Every>(module, "loading", "Laws of the external load of the joint.", registered);
-  bind_group<actuation::Every>(module, "actuation", "Laws of actuators.", registered);
-  bind_group<sensing::All>(module, "sensing", "Laws of sensors.", registered);
+  const auto add = [&](const char* group, const char* doc, const std::vector<LawFacts (*)()>& laws) {
+    py::module_ inside = module.def_submodule(group, doc);
+    for (const auto make_facts : laws) {
+      const auto& law = *new LawFacts(make_facts());
+      registered.append(py::make_tuple(group, law.name));
+      inside.attr(pascal_case(law.name).c_str()) = class_of(law, base, inside);
+    }
+  };
+  add("friction", "Friction laws.", facts_of_all<friction::Every>());
+  add("transmission", "Laws of cables and gears.", facts_of_all<transmission::Every>());
+  add("sheath", "Laws of pretensioned tendons in sheaths.",
+      facts_of_all<Joined<transmission::Sheath, transmission::Tendons>::type>());
+  add("ends", "Laws of the end sections of cables.", facts_of_all<transmission::Ends>());
+  add("loading", "Laws of the external load of the joint.", facts_of_all<loading::Every>());
+  add("actuation", "Laws of actuators.", facts_of_all<actuation::Every>());
+  add("sensing", "Laws of sensors.", facts_of_all<sensing::All>());
+  options.enable_function_signatures();
   module.def(
       "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");
 }

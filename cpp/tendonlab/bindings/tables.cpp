@@ -57,7 +57,8 @@ void bind_effects(py::module_& module) {
   bind_record(
       module, "ParameterInfo", "A parameter of a system or of a law.",
       field("name", &ParameterInfo::name, "Public name."),
-      field("element", &ParameterInfo::element, "Element of its law; None: of the system itself.", ""),
+      field("element", &ParameterInfo::element, "Element of its law; None: of the system itself, or of a law alone.",
+            ""),
       field("effect", &ParameterInfo::effect, "Name of its law; None: of the system itself.", ""),
       field("own", &ParameterInfo::own, "Name inside its law."),
       field("dimension", &ParameterInfo::dimension, "Name of its dimension."),

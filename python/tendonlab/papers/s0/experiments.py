@@ -29,7 +29,7 @@ def lugre_system(model: Lugre) -> System:
 def proposed_system(model: Proposed, *, ratio: float) -> System:
     """The load-and-ratio model as a simulator of the library."""
     law = model.law(ratio)
-    values = {row["name"]: float(getattr(law, row["name"])) for row in law.parameters}
+    values = {row.name: float(getattr(law, row.name)) for row in law.parameters}
     return System(kind="friction_map", effects=PROPOSED, parameters=values)
 
 

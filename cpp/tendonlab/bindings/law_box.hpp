@@ -1,0 +1,182 @@
+#pragma once
+// Laws behind one interface of plain numbers: the templates end here, and all that Python sees is made once for all.
+#include <memory>
+#include <vector>
+
+#include "tendonlab/core/chain.hpp"
+#include "tendonlab/systems/model.hpp"
+
+namespace tendonlab::bindings {
+using Numbers = std::vector<double>;
+
+/// A law with its numbers. It answers in its own roles, and 0 in others. `port`: one number per `LawFacts::fields`;
+/// `moving`: velocity, deflection, dry friction level, load; `passing`: signal, acceleration.
+class LawBox {
+ public:
+  virtual ~LawBox() = default;
+  virtual double level(const Numbers& port) const = 0;
+  virtual double factor(const Numbers& port) const = 0;
+  virtual double gain(const Numbers& port) const = 0;
+  virtual double force(const Numbers& port) const = 0;
+  virtual Numbers motion(const Numbers& port) const = 0;
+  virtual double state_rate(const Numbers& moving) const = 0;
+  virtual double state_force(const Numbers& moving) const = 0;
+  virtual double apply(const Numbers& passing) const = 0;
+  virtual double lateness() const = 0;
+  virtual Numbers output(Numbers effort, double level) const = 0;
+};
+
+/// What a law states about itself.
+struct LawFacts {
+  std::string_view name, noun, equation, source, summary;
+  unsigned roles;
+  bool delays;
+  std::vector<std::string> fields;  ///< of the port that the law sees
+  std::vector<ParameterInfo> parameters;
+  std::unique_ptr<const LawBox> (*make)(const Numbers& values);
+
+  bool plays(unsigned wanted) const { return (roles & wanted) != 0; }
+  void add(const Parameter<LawFacts, double>& p) {
+    const std::string own(p.name);
+    parameters.push_back({own,
+                          {},
+                          std::string(name),
+                          own,
+                          p.dimension,
+                          p.purpose,
+                          p.role,
+                          p.typical,
+                          p.lower,
+                          p.upper,
+                          std::string(p.meaning)});
+  }
+};
+
+inline double sign_between(double above, double below) {
+  return static_cast<double>((above > 0) - (below < 0));
+}
+/// The port that a law sees: Sliding, or one of its own with more fields.
+template <class L, class = void>
+struct PortOf {
+  using type = Sliding<double>;
+};
+template <class L>
+struct PortOf<L, std::void_t<typename L::template Port<double>>> {
+  using type = typename L::template Port<double>;
+};
+
+template <class L>
+class BoxOf final : public LawBox {
+  using Port = typename PortOf<L>::type;
+  L law{};
+  static constexpr bool plays(unsigned wanted) { return (L::roles & wanted) != 0; }
+
+ public:
+  explicit BoxOf(const Numbers& values) {
+    auto next = values.begin();
+    for_each_parameter<L>([&](const auto& p) { law.*p.field = *next++; });
+  }
+  double level(const Numbers& port) const override {
+    if constexpr (plays(role::level)) return law.level(port_of(port));
+    return static_cast<void>(port), 0.0;
+  }
+  double factor(const Numbers& port) const override {
+    if constexpr (plays(role::factor)) return law.factor(port_of(port));
+    return static_cast<void>(port), 0.0;
+  }
+  double gain(const Numbers& port) const override {
+    if constexpr (plays(role::gain)) return law.gain(port_of(port));
+    return static_cast<void>(port), 0.0;
+  }
+  double force(const Numbers& port) const override {
+    double sum = 0;
+    if constexpr (plays(role::level | role::force)) {
+      const Port at = port_of(port);
+      if constexpr (plays(role::level)) sum += at.direction * law.level(at);
+      if constexpr (plays(role::force)) sum += law.force(at);
+    }
+    return static_cast<void>(port), sum;
+  }
+  Numbers motion(const Numbers& port) const override {
+    Numbers behind = port;
+    if constexpr (plays(role::motion)) {
+      const auto moved = law.motion(port_of(port));
+      auto next = behind.begin();
+      moved.for_each_field([&](std::string_view, unsigned, auto access) { *next++ = access(moved); });
+    }
+    return behind;
+  }
+  double state_rate(const Numbers& moving) const override {
+    if constexpr (plays(role::memory)) return law.state_rate(sliding_of(moving), moving[2], moving[1]);
+    return static_cast<void>(moving), 0.0;
+  }
+  double state_force(const Numbers& moving) const override {
+    double sum = 0;
+    if constexpr (plays(role::memory)) {
+      const auto at = sliding_of(moving);
+      double left = 1.0;  // share of the dry friction that the memory leaves to the slot
+      if constexpr (takes_over_dry_friction<L>) left = law.dry_share();
+      sum = law.state_force(at, moving[1], state_rate(moving)) + at.direction * left * moving[2];
+    }
+    return static_cast<void>(moving), sum;
+  }
+  double apply(const Numbers& passing) const override {
+    if constexpr (acts_at_once<L>) return law.apply(Passing<double>{passing[0], passing[1]});
+    return passing[0];
+  }
+  double lateness() const override {
+    if constexpr (delays_signal<L>) return law.lateness();
+    return 0.0;
+  }
+  Numbers output(Numbers effort, double level) const override {
+    if constexpr (plays(role::output)) {
+      typename L::template State<double> state{effort.empty() ? 0.0 : effort[0], effort.empty() ? 0.0 : effort[0]};
+      for (double& value : effort) {
+        state = law.next(state, value, level);
+        value = law.output(value, state);
+      }
+    }
+    return static_cast<void>(level), effort;
+  }
+
+ private:
+  /// The port with the modes that a stepper would hold: they follow from the motion, 0 at rest.
+  Port port_of(const Numbers& fields) const {
+    Port at;
+    auto next = fields.begin();
+    at.for_each_field([&](std::string_view, unsigned, auto access) { access(at) = *next++; });
+    at.direction = sign_between(at.velocity, at.velocity);
+    if constexpr (opens_gap<L>) at.side = sign_between(at.position - law.half_gap(), at.position + law.half_gap());
+    return at;
+  }
+  static Sliding<double> sliding_of(const Numbers& moving) {
+    Sliding<double> at;
+    at.velocity = moving[0], at.load = moving[3];
+    at.direction = sign_between(at.velocity, at.velocity);
+    return at;
+  }
+};
+
+template <class L>
+std::unique_ptr<const LawBox> make_box(const Numbers& values) {
+  return std::make_unique<BoxOf<L>>(values);
+}
+template <class L>
+LawFacts facts_of() {
+  LawFacts facts{L::name,  L::noun,          L::equation, L::source, L::summary,
+                 L::roles, delays_signal<L>, {},          {},        &make_box<L>};
+  PortOf<L>::type::for_each_field([&](std::string_view name, unsigned, auto) { facts.fields.emplace_back(name); });
+  for_each_parameter<L>([&](const auto& p) {
+    facts.add({nullptr, p.name, p.dimension, p.purpose, p.typical, p.lower, p.upper, p.meaning, p.role});
+  });
+  return facts;
+}
+/// What makes the facts of each law of a list, in its order. Pointers keep compilers from inlining them all in one
+/// place.
+template <class List>
+std::vector<LawFacts (*)()> facts_of_all() {
+  std::vector<LawFacts (*)()> all;
+  List::for_each([&](auto* law) { all.push_back(&facts_of<std::remove_pointer_t<decltype(law)>>); });
+  return all;
+}
+}  // namespace tendonlab::bindings
