@@ -350,4 +350,5 @@ def fit(
     max_iterations: int = 50,
     tolerance: float = 1e-8,
     cancel: Cancel | None = None,
+    goal: float = ...,
 ) -> dict[str, Any]: ...

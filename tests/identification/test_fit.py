@@ -75,6 +75,18 @@ def test_along_a_bound_the_others_are_fitted_to_the_end(joint: Any, bound: float
     np.testing.assert_allclose(found["x"][1:], known["x"], atol=1e-3)
 
 
+def test_a_fit_too_slow_for_its_goal_ends_early(joint: Any) -> None:
+    """No inertia makes up for friction: no cost near 0 is in reach. One that is changes nothing."""
+    tasks, free = joint.tasks(coulomb=0.5), joint.free("inertia")
+    whole = joint.fit(tasks, free, tolerance=1e-14)
+    early = joint.fit(tasks, free, tolerance=1e-14, goal=0.0)
+    assert early["iterations"] < whole["iterations"]
+    assert not early["converged"]
+    assert "the cost was still falling" in early["message"]
+    reached = joint.fit(tasks, free, tolerance=1e-14, goal=1.01 * whole["cost"])
+    assert reached["x"] == whole["x"]
+
+
 def test_a_start_at_a_bound_that_the_data_leave_is_left(joint: Any) -> None:
     tasks = joint.tasks(coulomb=0.25, viscous=0.5)
     free = [*joint.free("coulomb", upper=0.3), *joint.free("viscous", lower=0.4)]

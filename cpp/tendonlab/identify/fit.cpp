@@ -99,34 +99,45 @@ Places on_bound(const Problem& problem, const Vector& x, int side = 0) {
   return on;
 }
 
-/// Keeps the best point, which Ceres forgets when a solve fails, and stops a cancelled solve, or one that moves along
-/// the same bounds, other than the `fixed` ones, for `patience` steps.
+/// Keeps the best point, which Ceres forgets when a solve fails, and stops a solve that was cancelled, that moves along
+/// the same bounds, other than the `fixed` ones, for `patience` steps, or that is too slow to reach the goal.
 class Watch final : public ceres::IterationCallback {
  public:
-  Watch(const Problem& fitted, const Cancel* stop, const Vector& free, const Coordinates& states, const Places& fixed,
+  Watch(const Problem& fitted, const Options& given, const Vector& free, const Coordinates& states, const Places& fixed,
         int steps)
-      : problem(fitted), cancel(stop), x(free), z(states), held(fixed), best_x(free), best_z(states), patience(steps) {}
+      : problem(fitted),
+        options(given),
+        x(free),
+        z(states),
+        held(fixed),
+        best_x(free),
+        best_z(states),
+        patience(steps) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (iteration.step_is_successful) {
       best_x = x, best_z = z;
       const Places now = on_bound(problem, x);
       along = now == bounds && now != held ? along + 1 : 0;
       bounds = now;
+      hopeless = iteration.iteration > 1 &&
+                 options.max_iterations * (progress + iteration.cost_change) < iteration.cost - options.goal;
+      progress = iteration.cost_change;
     }
     iterations = iteration.iteration;
     crawls = along >= patience;
-    const bool ends = crawls || (cancel && cancel->load());
+    const bool ends = crawls || hopeless || (options.cancel && options.cancel->load());
     return ends ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
   const Problem& problem;
-  const Cancel* cancel;
+  const Options& options;
   const Vector& x;
   const Coordinates& z;
   const Places& held;
   Vector best_x;
   Coordinates best_z;
   int patience, along = 0, iterations = 0;
-  bool crawls = false;
+  double progress = 0;  ///< of the last step that lowered the cost
+  bool crawls = false, hopeless = false;
   Places bounds;
 };
 
@@ -201,7 +212,7 @@ void tell(const ceres::Solver::Summary& summary, const Options& options, const s
   else if (of.converged)
     of.message = "converged";
   else if (summary.termination_type == ceres::NO_CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS)
-    of.message = sentence("stopped after ", options.max_iterations, " iterations while the cost was still falling");
+    of.message = sentence("stopped after ", of.iterations, " iterations while the cost was still falling");
   else
     of.message = thrown ? "stopped where simulations fail: " + words(thrown) : "stopped: " + summary.message;
 }
@@ -306,14 +317,14 @@ Result settle(const Problem& problem, Predictions& predictions, const Options& o
     hold(held, x, solved);
     auto with = solver_options(options, x, z);
     with.max_num_iterations = options.max_iterations - done;
-    Watch watch(problem, options.cancel, x, z, held, patience);
+    Watch watch(problem, options, x, z, held, patience);
     with.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
     ceres::Solve(with, &solved, &summary);
     x = watch.best_x, z = watch.best_z, done += watch.iterations;
     Result of = describe(problem, predictions, x, z);
     const Places against = pressed(problem, x, of);
-    const bool ends = done >= options.max_iterations || round == most_rounds ||
+    const bool ends = done >= options.max_iterations || watch.hopeless || round == most_rounds ||
                       summary.termination_type == ceres::FAILURE || (options.cancel && options.cancel->load());
     if (ends || (against == held && !watch.crawls)) {
       of.iterations = done;

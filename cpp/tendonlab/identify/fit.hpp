@@ -64,6 +64,7 @@ struct Options {
   int max_iterations = 50;
   double tolerance = 1e-8;  ///< relative change of the cost at which the fit has converged
   const Cancel* cancel = nullptr;
+  double goal = inf;  ///< cost to get below; a fit that `max_iterations` steps at its pace would not bring there stops
 };
 
 /// Residuals of one experiment in noise standard deviations, with derivatives by the coordinates.

@@ -3,6 +3,7 @@ experiments of a case and under one noise floor."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -33,13 +34,11 @@ class Problem:
     free: tuple[Free, ...] = ()
     initial: tuple[tuple[float, ...], ...] = ()
 
-    def solve(self, *, cancel: _core.Cancel | None = None, max_iterations: int = 50, tolerance: float = 1e-8) -> Fitted:
-        """The model at its optimum. Raises NumericalError where a simulation fails at the start."""
-        return self._fitted(
-            _core.fit(
-                *self._stated(), initial=self.initial, max_iterations=max_iterations, tolerance=tolerance, cancel=cancel
-            )
-        )
+    def solve(self, *, max_iterations: int = 50, tolerance: float = 1e-8, **options: Any) -> Fitted:
+        """The model at its optimum; `options` as `_core.fit` has them. Raises NumericalError where a simulation fails
+        at the start."""
+        stated, limits = self._stated(), {"max_iterations": max_iterations, "tolerance": tolerance}
+        return self._fitted(_core.fit(*stated, initial=self.initial, **limits, **options))
 
     def linearise(self) -> Fitted:
         """The model at the start. Raises NumericalError where a simulation fails."""
@@ -145,15 +144,18 @@ class Fitter:
         added: Sequence[str] = (),
         initial: Sequence[Sequence[float]] = (),
         max_iterations: int = 25,
+        tolerance: float = 1e-6,
+        goal: float = math.inf,
         solve: bool = True,
         known: bool = False,
     ) -> Fitted:
         """Fit `system` from its own values, with priors about the nominal ones, and the `initial` unknowns of each
-        experiment. `solve` False: only linearise there. `known`: fit those unknowns alone."""
+        experiment. `goal`: a cost; a fit too slow to get below ends early. `solve` False: only linearise there.
+        `known`: fit those unknowns alone."""
         problem = pose(self.case, self.floor, system, added=() if known else added, initial=initial, known=known)
         if not solve:
             return problem.linearise()
-        return problem.solve(cancel=self.cancel, max_iterations=max_iterations, tolerance=1e-6)
+        return problem.solve(cancel=self.cancel, max_iterations=max_iterations, tolerance=tolerance, goal=goal)
 
     def under(self, level: float) -> Fitter:
         """The same under noise of `level` times the power, for fits to the training experiments."""

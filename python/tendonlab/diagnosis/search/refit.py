@@ -17,6 +17,7 @@ CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to
 BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
 STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which it compensates for something
 NUM_COOLINGS = 6  # fits under noise as large as the misfit, at the most
+COOLED = 0.01  # relative change of the cost at which a cooling ends: all that counts is whether it halves the misfit
 
 Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
 
@@ -56,18 +57,24 @@ def _fit(
 
     `from_nominal`: start at the nominal values of the simulator instead of the tuned ones."""
     added = (*base.added, *effect)
+    enough = _evidence_to_reach(base, best, rival_gain)
     try:
         system, initial = base.system.with_effects(effect), base.initial
         if from_nominal:
             system, initial = _cooled(fitter, base, system, added)
-        fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH)
-        hopeless = rival_gain is not None and fit.evidence - base.evidence < CATCH_UP * rival_gain
-        worse = best is not None and fit.evidence < best.evidence - BEHIND
-        if not (fit.converged or hopeless or worse):
+        goal = base.cost - (enough - base.evidence) / base.effective
+        fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH, goal=goal)
+        if not (fit.converged or fit.evidence < enough):
             fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=40)
     except (NumericalError, ParameterError):
         return None
     return fit
+
+
+def _evidence_to_reach(base: Fitted, best: Fitted | None, rival_gain: float | None) -> float:
+    """The evidence below which a sketch lies too far behind the rival or the best fit so far."""
+    rival = -math.inf if rival_gain is None else base.evidence + CATCH_UP * rival_gain
+    return rival if best is None else max(rival, best.evidence - BEHIND)
 
 
 def strained(fitter: Fitter, base: Fitted) -> bool:
@@ -89,7 +96,9 @@ def _cooled(
     misfit = fit.mean_square
     for _ in range(NUM_COOLINGS):
         level = max(1.0, misfit)
-        fit = fitter.under(level).fit(fit.system, added=added, initial=fit.initial, max_iterations=SKETCH)
+        fit = fitter.under(level).fit(
+            fit.system, added=added, initial=fit.initial, max_iterations=SKETCH, tolerance=COOLED
+        )
         misfit = level * fit.mean_square
         if misfit > 0.5 * level or misfit < NEAR_FLOOR:
             break
