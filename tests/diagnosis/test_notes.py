@@ -13,7 +13,7 @@ from tendonlab.fitting.problem import Fitter
 def test_what_the_experiments_state_themselves_is_told(fitter: Fitter, twin_case: Any) -> None:
     """Of gravity, which every experiment knows, no residual says anything; nor is it proposed to be anything else."""
     known = tuple(replace(e, conditions={**e.conditions, "gravity_torque": 1.0}) for e in twin_case.experiments)
-    case = replace(twin_case, experiments=known)
+    case = replace(twin_case, experiments=known).training_on(twin_case.train[:2])
     fitted = replace(fitter, case=case).fit(case.system, max_iterations=1)
     search = Search(fitter, tuned=fitted, steps=(), rounds=())
     warning = "Not constrained by these data and held at the nominal value: gravity_torque."
