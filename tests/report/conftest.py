@@ -279,3 +279,9 @@ def diagnosis(request: pytest.FixtureRequest) -> Diagnosis:
 def with_effect() -> Diagnosis:
     """The diagnosis that names an effect."""
     return effect()
+
+
+@pytest.fixture
+def undrawn() -> Diagnosis:
+    """The diagnosis that names an effect, without the figures that take long to draw: for tests that read words."""
+    return replace(effect(), overlay=None, where_map=())

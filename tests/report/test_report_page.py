@@ -74,12 +74,18 @@ def test_page_holds_the_sentence_and_the_four_answers(diagnosis: Diagnosis, tmp_
     assert ("not yet calibrated" in words) is not diagnosis.calibrated
 
 
-def test_files_written(with_effect: Diagnosis, tmp_path: Path) -> None:
-    assert with_effect.report(tmp_path / "a" / "b") == tmp_path / "a" / "b" / "report.html"
+def test_files_written_hold_the_same_bytes_each_time(with_effect: Diagnosis, tmp_path: Path) -> None:
+    first, second = with_effect.report(tmp_path / "a" / "b"), with_effect.report(tmp_path / "c")
+    assert first == tmp_path / "a" / "b" / "report.html"
     figures = {f"{name}.{kind}" for name in ("gap", "overlay", "where", "effects") for kind in ("svg", "png")}
-    assert {path.name for path in (tmp_path / "a" / "b").iterdir()} == figures | {"report.html", "report.json"}
-    with_effect.report(tmp_path / "bare", figures=False)
-    assert {path.name for path in (tmp_path / "bare").iterdir()} == {"report.html", "report.json"}
+    assert {path.name for path in first.parent.iterdir()} == figures | {"report.html", "report.json"}
+    for path in first.parent.iterdir():
+        assert path.read_bytes() == (second.parent / path.name).read_bytes(), path.name
+
+
+def test_without_figures_there_are_two_files(with_effect: Diagnosis, tmp_path: Path) -> None:
+    with_effect.report(tmp_path, figures=False)
+    assert {path.name for path in tmp_path.iterdir()} == {"report.html", "report.json"}
 
 
 def test_a_report_that_fails_leaves_the_earlier_one(with_effect: Diagnosis, tmp_path: Path) -> None:
@@ -99,12 +105,6 @@ def test_a_folder_is_made_before_there_is_anything_to_write(tmp_path: Path) -> N
         prepare_folder(tmp_path / "file")
     with pytest.raises(OSError, match="file"):
         prepare_folder(tmp_path / "file" / "below")
-
-
-def test_the_same_diagnosis_gives_the_same_bytes(with_effect: Diagnosis, tmp_path: Path) -> None:
-    first, second = with_effect.report(tmp_path / "a"), with_effect.report(tmp_path / "b")
-    for path in first.parent.iterdir():
-        assert path.read_bytes() == (second.parent / path.name).read_bytes(), path.name
 
 
 def test_text_of_users_is_escaped(with_effect: Diagnosis, tmp_path: Path) -> None:
@@ -168,9 +168,9 @@ def test_empty_results_still_make_a_page(with_effect: Diagnosis, tmp_path: Path)
     assert "no effect of the library explains" in words
 
 
-def test_a_held_out_run_without_a_gap_has_no_shrinkage(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_a_held_out_run_without_a_gap_has_no_shrinkage(undrawn: Diagnosis, tmp_path: Path) -> None:
     table = pd.DataFrame({"nominal": [2.0], "refitted": [0.0], "with_effect": [np.nan]}, index=["quiet"])
-    text, _ = read(replace(with_effect, held_out=table), tmp_path)
+    text, _ = read(replace(undrawn, held_out=table), tmp_path)
     assert '<td>quiet</td><td class="n">2</td><td class="n">0</td><td class="n">–</td><td class="n">–</td>' in text
 
 
@@ -201,57 +201,57 @@ def test_caption_says_what_the_overlay_leaves_out(with_effect: Diagnosis, tmp_pa
     assert "Shown:" not in read(with_effect, tmp_path)[0]
 
 
-def test_numbers_in_figures_are_those_of_the_tables(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_numbers_in_figures_are_those_of_the_tables(undrawn: Diagnosis, tmp_path: Path) -> None:
     """Coordinates of the drawing are shortened for the page, the text in it is not."""
     gap = {"joint_angle": {"noise_floor": 0.264e-3, "nominal": 2.3e-3, "refitted": 0.996e-3, "with_effect": 0.348e-3}}
-    text, _ = read(replace(with_effect, gap=gap), tmp_path)
+    text, _ = read(replace(undrawn, gap=gap), tmp_path)
     assert all(f"{value} mrad" in text for value in ("2.3", "0.996", "0.348"))
     assert all(f'<td class="n">{value}</td>' in text for value in ("2.3", "0.996"))
 
 
-def test_elements_that_are_ruled_out_share_a_row(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_elements_that_are_ruled_out_share_a_row(undrawn: Diagnosis, tmp_path: Path) -> None:
     elements = [{"element": name, "probability": p} for name, p in (("joint", 0.9), ("cable", 0.0), ("motor", 0.001))]
-    page = read(replace(with_effect, where={**with_effect.where, "elements": elements}), tmp_path)[1]
+    page = read(replace(undrawn, where={**undrawn.where, "elements": elements}), tmp_path)[1]
     assert "2 other elements" in page.text
     assert "Cable" not in page.text
 
 
-def test_the_summary_names_no_regime_that_chance_explains(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_the_summary_names_no_regime_that_chance_explains(undrawn: Diagnosis, tmp_path: Path) -> None:
     regimes = [
         {"coordinate": "joint_velocity", "range": [0.0, 0.05], "share": 0.4, "p_value": 0.01},
         {"coordinate": "time", "range": [8.0, 12.0], "share": 0.9, "p_value": 0.2},
     ]
-    words = " ".join(read(replace(with_effect, where={**with_effect.where, "regimes": regimes}), tmp_path)[1].text)
+    words = " ".join(read(replace(undrawn, where={**undrawn.where, "regimes": regimes}), tmp_path)[1].text)
     assert "mainly at joint velocity 0 to 0.05 rad/s (40 % of the excess)" in words
 
 
-def test_fitted_parameters_and_settings_carry_their_units(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_fitted_parameters_and_settings_carry_their_units(undrawn: Diagnosis, tmp_path: Path) -> None:
     stiffness = {"value": 42.0, "nominal": None, "ci95": [40.0, 44.0], "unit": "N*m/rad"}
     details = {"parameters": {"cable_stiffness": stiffness}, "noise": {"joint_angle": 2.1e-4}}
-    page = read(replace(with_effect, details=details), tmp_path)[1]
+    page = read(replace(undrawn, details=details), tmp_path)[1]
     assert {"Parameters with the effect", "Cable stiffness ", "(N·m/rad)", "40 to 44"} <= set(page.text)
     assert "joint angle 210 µrad (standard deviation)" in page.text
 
 
-def test_parameters_that_nothing_informs_show_no_interval(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_parameters_that_nothing_informs_show_no_interval(undrawn: Diagnosis, tmp_path: Path) -> None:
     silent = {"value": 0.01, "ci95": [0.004, 0.016], "unit": "m", "nominal": 0.01, "informed": False}
-    page = read(replace(with_effect, details={"parameters": {"motor_radius_2": silent}}), tmp_path)[1]
+    page = read(replace(undrawn, details={"parameters": {"motor_radius_2": silent}}), tmp_path)[1]
     assert "not constrained by these data" in page.text
     assert not {"4 to 16", "0.004 to 0.016"} & set(page.text)
 
 
-def test_problems_of_the_logs_are_shown_only_where_there_are_some(with_effect: Diagnosis, tmp_path: Path) -> None:
-    quiet = " ".join(read(with_effect, tmp_path)[1].text)
+def test_problems_of_the_logs_are_shown_only_where_there_are_some(undrawn: Diagnosis, tmp_path: Path) -> None:
+    quiet = " ".join(read(undrawn, tmp_path)[1].text)
     assert "what looks wrong with the logs" not in quiet
     lag = {"problem": "clock", "signal": None, "experiment": "swing-7", "detail": "lags the others by 20 ms"}
-    loud = replace(with_effect, data=({**lag, "blocks": True},))
+    loud = replace(undrawn, data=({**lag, "blocks": True},))
     words = " ".join(read(loud, tmp_path)[1].text)
     assert "Clock: lags the others by 20 ms" in words
     assert "(experiment swing-7; must be corrected before a diagnosis)" in words
     assert loud.to_dict()["data"] == [{**lag, "blocks": True}]
 
 
-def test_gains_of_the_replay_carry_their_units(with_effect: Diagnosis, tmp_path: Path) -> None:
+def test_gains_of_the_replay_carry_their_units(undrawn: Diagnosis, tmp_path: Path) -> None:
     replay = {"kind": "injection", "kp": 0.8, "kd": 0.01, "kp_unit": "N*m/rad", "kd_unit": "N*m*s/rad"}
-    words = " ".join(read(replace(with_effect, replay=replay), tmp_path)[1].text)
+    words = " ".join(read(replace(undrawn, replay=replay), tmp_path)[1].text)
     assert "kp = 0.8 N·m/rad; kd = 0.01 N·m·s/rad." in words
