@@ -174,6 +174,7 @@ ceres::Solver::Options solver_options(const Options& options, Vector& x, Coordin
   with.parameter_tolerance = options.tolerance;
   with.gradient_tolerance = 1e-12;
   with.line_search_interpolation_type = ceres::QUADRATIC;  // a cubic one needs derivatives wherever a step ends
+  with.max_num_line_search_step_size_iterations = 4;       // where that many do not help, a smaller trust region does
   with.num_threads = 1;                                    // same bits; callers run several fits at once
   with.logging_type = ceres::SILENT;
   with.update_state_every_iteration = true;  // for Watch
