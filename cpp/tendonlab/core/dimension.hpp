@@ -39,6 +39,7 @@ enum class Dimension {
   per_flow_squared,
   inverse_flow,
   effort_per_load,
+  voltage_per_displacement,
   count
 };
 /// What a rig was seen to do: its rms effort, its rms speed, the spread of its position.
@@ -81,7 +82,8 @@ inline constexpr DimensionInfo dimensions[] = {
     {Dimension::line_compliance, "line_compliance", "m/N", "m/N"},
     {Dimension::per_flow_squared, "per_flow_squared", "s^2/rad^2", "s^2/m^2"},
     {Dimension::inverse_flow, "inverse_flow", "s/rad", "s/m"},
-    {Dimension::effort_per_load, "effort_per_load", "1", "1"}};
+    {Dimension::effort_per_load, "effort_per_load", "1", "1"},
+    {Dimension::voltage_per_displacement, "voltage_per_displacement", "V/rad", "V/m"}};
 
 constexpr bool dimensions_are_in_order() {
   for (std::size_t i = 0; i < std::size(dimensions); ++i)

@@ -6,9 +6,11 @@
 #include "tendonlab/systems/ccsrm_tensions.hpp"
 #include "tendonlab/systems/friction_map.hpp"
 #include "tendonlab/systems/rigid_joint.hpp"
+#include "tendonlab/systems/servo_pendulum.hpp"
 #include "tendonlab/systems/tendon_routing.hpp"
 #include "tendonlab/systems/two_inertia.hpp"
 
 namespace tendonlab::systems {
-using All = Laws<RigidJoint, TwoInertia, FrictionMap, TendonRouting, CableJoint, BowdenPair, Ccsrm, CcsrmTensions>;
+using All = Laws<RigidJoint, ServoPendulum, TwoInertia, FrictionMap, TendonRouting, CableJoint, BowdenPair, Ccsrm,
+                 CcsrmTensions>;
 }
