@@ -1,5 +1,5 @@
 #pragma once
-#include "tendonlab/bindings/bind.hpp"
+// Plain C++: a file that needs only this does not read pybind11.
 #include "tendonlab/systems/model.hpp"
 
 namespace tendonlab::bindings {

@@ -1,5 +1,6 @@
 #include <pybind11/eigen.h>
 
+#include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/bindings/convert.hpp"
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/identify/fit.hpp"

@@ -1,3 +1,4 @@
+#include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/bindings/convert.hpp"
 #include "tendonlab/bindings/pickle.hpp"
 #include "tendonlab/core/error.hpp"
