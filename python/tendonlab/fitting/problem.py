@@ -37,8 +37,8 @@ class Problem:
     def solve(self, *, max_iterations: int = 50, tolerance: float = 1e-8, **options: Any) -> Fitted:
         """The model at its optimum; `options` as `_core.fit` has them. Raises NumericalError where a simulation fails
         at the start."""
-        stated, limits = self._stated(), {"max_iterations": max_iterations, "tolerance": tolerance}
-        return self._fitted(_core.fit(*stated, initial=self.initial, **limits, **options))
+        options |= {"initial": self.initial, "max_iterations": max_iterations, "tolerance": tolerance}
+        return self._fitted(_core.fit(*self._stated(), **options))
 
     def linearise(self) -> Fitted:
         """The model at the start. Raises NumericalError where a simulation fails."""
