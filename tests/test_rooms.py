@@ -29,10 +29,9 @@ UPWARD: dict[tuple[str, str], str] = {}
 # Rooms in which modules may need each other, each with its reason.
 CIRCLES = {"report": "a Diagnosis draws itself: its methods load the plots and pages that show it"}
 
-# The same in C++. Files of a room that stand in the folder of another are listed by name.
+# The same in C++.
 CPP_ROOMS = ("core", "mechanics", "laws", "systems", "integrate", "models", "identify", "bindings")
 LAWS = {"friction", "transmission", "actuation", "sensing", "loading"}
-MODELS = {"model.hpp", "model.cpp", "model_of.hpp", "instances.hpp", "instance.cpp.in"}  # a system joined to a stepper
 
 
 def module_name(path: Path) -> str:
@@ -142,7 +141,7 @@ def test_importing_the_package_loads_no_heavy_library() -> None:
 
 def cpp_room(path: Path) -> str:
     folder = path.relative_to(CPP).parts[0]
-    return "models" if path.name in MODELS and folder == "systems" else "laws" if folder in LAWS else folder
+    return "laws" if folder in LAWS else folder
 
 
 def includes(path: Path) -> Iterator[Path]:

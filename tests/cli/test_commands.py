@@ -45,7 +45,9 @@ def test_systems_lists_every_kind_with_its_signals(capsys: Printed) -> None:
     for kind in tl.kinds():
         info = tl.system_info(kind)
         assert f"{kind}: units of a rotary axis" in out.splitlines()
-        assert all(f"- {signal.name} (" in out for signal in (*info.inputs, *info.outputs))
+        assert all(
+            f"- {signal.name} (" in out or f"- {signal.name}: " in out for signal in (*info.inputs, *info.outputs)
+        )
     assert "- joint_inertia (kg·m²): " in out
 
 

@@ -1,6 +1,6 @@
 #pragma once
 // Plain C++: a file that needs only this does not read pybind11.
-#include "tendonlab/systems/model.hpp"
+#include "tendonlab/models/model.hpp"
 
 namespace tendonlab::bindings {
 /// Checks sizes and bounds: what goes into a simulation is finite and allowed, or ParameterError names it.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tendonlab/core/chain.hpp"
-#include "tendonlab/systems/model.hpp"
+#include "tendonlab/models/model.hpp"
 
 namespace tendonlab::bindings {
 using Numbers = std::vector<double>;

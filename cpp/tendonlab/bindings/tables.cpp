@@ -1,6 +1,6 @@
 // What dimensions, systems, effects and parameters there are: the tables of the core as read-only Python classes.
 #include "tendonlab/bindings/record.hpp"
-#include "tendonlab/systems/model.hpp"
+#include "tendonlab/models/model.hpp"
 
 namespace tendonlab::bindings {
 namespace {

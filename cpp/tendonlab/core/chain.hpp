@@ -40,7 +40,11 @@ struct Chain {
   }
   template <class S>
   S apply(const S& signal) const {
-    return apply(Passing<S>{signal, S{}});
+    if (active == 0) return signal;
+    return along(signal, [&](const auto& alone) {
+      using A = std::decay_t<decltype(alone)>;
+      return apply(Passing<A>{alone, A{}});
+    });
   }
   /// Sum of all delays, s.
   T delay() const {

@@ -37,10 +37,13 @@ template <class S>
 TENDONLAB_INLINE S constant(double a) {
   return S(typename UnderOf<S>::type(a));
 }
-/// A `T` as the scalar `S`: itself, or a Dual without partials.
+/// A `T` as the scalar `S`: itself, a Dual without partials, or without its derivatives where `S` has none.
 template <class S, class T>
 TENDONLAB_INLINE S lift(const T& a) {
-  return S(a);
+  if constexpr (std::is_constructible_v<S, const T&>)
+    return S(a);
+  else
+    return S(plain(a));
 }
 
 #define TENDONLAB_DUAL      \
@@ -140,6 +143,22 @@ Plain<T> plain(const Dual<T, n>& a) {
 }
 #undef TENDONLAB_DUAL
 #undef TENDONLAB_MIXED
+
+/// The number of partials, 0 for a scalar that is no Dual.
+template <class S>
+inline constexpr int partials = 0;
+template <class T, int n>
+inline constexpr int partials<Dual<T, n>> = n;
+/// f(a) of one number: f runs on one partial, the chain rule gives the others.
+template <class S, class F>
+TENDONLAB_INLINE S along(const S& a, F f) {
+  if constexpr (partials < S >> 1) {
+    const auto one = f(variable<Dual<typename UnderOf<S>::type, 1>>(a.value, 0));
+    return chain(one.value, one.d[0], a);
+  } else {
+    return f(a);
+  }
+}
 
 /// base^exponent for base >= 0; at base 0 that of the smallest positive number, so that no derivative is NaN.
 template <class B, class E>

@@ -1,5 +1,6 @@
 #pragma once
 // Three ways to fail: a parameter, the data, the numbers. Each message names what, its value, and what was expected.
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>

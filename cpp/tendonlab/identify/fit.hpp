@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "tendonlab/identify/whitening.hpp"
-#include "tendonlab/systems/model.hpp"
+#include "tendonlab/models/model.hpp"
 
 namespace tendonlab::identify {
 /// A parameter that is fitted, through the coordinate x = log(value / scale) or value / scale.

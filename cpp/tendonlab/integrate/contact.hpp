@@ -42,7 +42,7 @@ class Contact : public Sticking<System, T> {
   double guard_rate(int m, const Y& y, const R& rate, const F& frame, const Inputs& in) const {
     const bool slides = m < directions;
     if constexpr (general) {
-      const auto c = couple_in_duals(system, y, frame, in);
+      const auto c = couple_in_duals<false>(system, y, frame, in);
       const auto& guard = [&]() -> const auto& {
         if constexpr (System::sides > 0)
           if (!slides) return c.port[static_cast<std::size_t>(side_port[m])].position;
@@ -90,18 +90,23 @@ class Contact : public Sticking<System, T> {
     return level > 0 ? 1.0 - std::fabs(push) / level : -1.0;
   }
 
-  /// Takes the sliding velocity of mode m to exactly 0: its value only, the derivatives at this instant stay.
+  /// The velocity that takes the sliding velocity of mode m to exactly 0 when it is subtracted.
   template <class Inputs>
-  void rest(int m, Y& y, const F& frame, const Inputs& in) const {
+  std::array<T, n> excess(int m, const Y& y, const F& frame, const Inputs& in) const {
     const int port = representative[m];
     const auto& geometry = this->geometry(y, frame, in);
-    double norm = 0;
-    for (int j = 0; j < n; ++j) norm += square(plain(geometry.lever[port][j]));
-    const double excess = plain(sliding_velocity(m, y, frame, in)) / norm;
-    for (std::size_t j = 0; j < n; ++j) {
-      const double lever = plain(geometry.lever[port][j]);
-      if (lever != 0.0) y.at.velocity[j] = y.at.velocity[j] - excess * lever;
-    }
+    T norm(0.0);
+    for (int j = 0; j < n; ++j) norm = norm + square(geometry.lever[port][j]);
+    const T sliding = sliding_velocity(m, y, frame, in) / norm;
+    std::array<T, n> each;
+    for (std::size_t j = 0; j < n; ++j) each[j] = sliding * geometry.lever[port][j];
+    return each;
   }
+};
+/// Ports at an instant: the modes, and what they stand for.
+template <class System, class T>
+struct Touching {
+  const Contact<System, T>& contact;
+  const Frame<System, T>& frame;
 };
 }  // namespace tendonlab::integrate

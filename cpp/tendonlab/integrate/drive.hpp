@@ -26,7 +26,8 @@ class Drive {
     pass_command(experiment.time.front());
   }
 
-  /// The command that reaches the actuator, as a function of the motion.
+  /// The command that reaches the actuator, as a function of the motion. `S` may be without the derivatives of `T`: so
+  /// modes are decided.
   template <class S, std::size_t n>
   S command_of(const std::array<S, n>& position, const std::array<S, n>& velocity, const S& now) const {
     const Loop& loop = from.loop;
@@ -35,14 +36,14 @@ class Drive {
       const S u = unlimited(position, velocity, now);
       const double edge = remembers ? clipped(plain(u)) : side;
       const S limited = edge == 0.0 ? u : constant<S>(edge * loop.limit);
-      return limited + from.loop.disturbance.value(S(now - late), disturbance_piece);
+      return limited + from.loop.disturbance.value(S(now - lift<S>(late)), disturbance_piece);
     }
-    const S u = from.inputs[0].value(S(now - late), piece[0]);
+    const S u = from.inputs[0].value(S(now - lift<S>(late)), piece[0]);
     if (loop.kind == Loop::Kind::open) return u;
     // The sensor's model is inverted on the logged signal: its delay needs no past of the simulation.
-    const S then = now + sensor_late;
+    const S then = now + lift<S>(sensor_late);
     const auto axis = static_cast<std::size_t>(loop.axis);
-    return u + loop.proportional * (loop.reference.value(then, reference_piece) - bias - position[axis]) +
+    return u + loop.proportional * (loop.reference.value(then, reference_piece) - lift<S>(bias) - position[axis]) +
            loop.derivative * (loop.reference.slope(then, reference_piece) - velocity[axis]);
   }
   template <class S, int n>
@@ -73,12 +74,12 @@ class Drive {
   S unlimited(const std::array<S, n>& position, const std::array<S, n>& velocity, const S& now) const {
     const Loop& loop = from.loop;
     const auto axis = static_cast<std::size_t>(loop.axis);
-    const S then = now - late;
+    const S then = now - lift<S>(late);
     S y = position[axis], rate = velocity[axis];
-    if (remembers) std::tie(y, rate) = past.reading(S(then - sensor_late), y, rate, now);
+    if (remembers) std::tie(y, rate) = past.reading(S(then - lift<S>(sensor_late)), y, rate, now);
     const S r = loop.reference.value(then, reference_piece);
     const S dr = loop.reference_weight * loop.reference.slope(then, reference_piece);
-    return loop.proportional * (r - (y + bias)) + loop.derivative * (dr - rate);
+    return loop.proportional * (r - (y + lift<S>(bias))) + loop.derivative * (dr - rate);
   }
   bool saturates() const {
     return from.loop.kind == Loop::Kind::controller && from.loop.sample_time == 0 && !remembers &&

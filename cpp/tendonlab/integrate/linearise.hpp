@@ -16,50 +16,33 @@ struct Arrowhead {
 /// One slot's response and its partials by the columns of the system.
 template <class Slot, class T, int columns>
 struct SlotBlocks {
-  static constexpr int has = Slot::states;
-  static constexpr bool seen[5] = {(Slot::sees & sees_velocity) != 0, (Slot::sees & sees_position) != 0,
-                                   (Slot::sees & sees_load) != 0, (Slot::sees & sees_wrap) != 0,
-                                   (Slot::sees & sees_preload) != 0};
-  static constexpr int outer = seen[0] + seen[1] + seen[2] + seen[3] + seen[4], inner = outer + has;
+  static constexpr int has = Slot::states, looks = Slot::looks;
   Response<T> value;
   T force_by[columns], rate_by[columns], force_z{}, decay{};
 
   template <class D>
   TENDONLAB_INLINE SlotBlocks(const Slot& slot, const Sliding<D>& port, const T& z) {
-    using L = Dual<T, inner>;
-    Sliding<L> s;
-    s.direction = port.direction;
-    s.side = port.side;
-    const D* source[outer];
-    int k = 0;
-    const auto seed = [&](L & x, const D& from, bool is_seen) __attribute__((always_inline)) {
-      if (!is_seen) return;
-      x = variable<L>(from.value, k);
-      source[k++] = &from;
-    };
-    seed(s.velocity, port.velocity, seen[0]);
-    seed(s.position, port.position, seen[1]);
-    seed(s.load, port.load, seen[2]);
-    seed(s.wrap, port.wrap, seen[3]);
-    seed(s.preload, port.preload, seen[4]);
-    L own(z);
-    if constexpr (has > 0) own.d[inner - 1] = T(1.0);
-    const Response<L> f = slot.respond(s, own);
+    const D* source[looks + 1];
+    const auto own = slot.by_fields(port, source);
+    using L = std::decay_t<decltype(own.velocity)>;
+    L state(z);
+    if constexpr (has > 0) state.d[looks] = T(1.0);
+    const Response<L> f = slot.respond(own, state);
     value = {f.force.value, f.rate.value};
     chain_rule(force_by, f.force, source);
     if constexpr (has > 0) {
       chain_rule(rate_by, f.rate, source);
-      force_z = f.force.d[inner - 1];
-      decay = -f.rate.d[inner - 1];
+      force_z = f.force.d[looks];
+      decay = -f.rate.d[looks];
     }
   }
 
  private:
   template <class L, class D>
-  static TENDONLAB_INLINE void chain_rule(T (&by)[columns], const L& f, const D* const (&source)[outer]) {
+  static TENDONLAB_INLINE void chain_rule(T (&by)[columns], const L& f, const D* const (&source)[looks + 1]) {
     for (std::size_t q = 0; q < columns; ++q) {
       T sum = f.d[0] * source[0]->d[q];
-      for (std::size_t e = 1; e < outer; ++e) sum = sum + f.d[e] * source[e]->d[q];
+      for (std::size_t e = 1; e < looks; ++e) sum = sum + f.d[e] * source[e]->d[q];
       by[q] = sum;
     }
   }
@@ -72,7 +55,7 @@ template <int columns, class Slot, class T, class D>
 }
 
 /// The ports in duals of (positions, velocities, time).
-template <class System, class T, class Inputs>
+template <bool inlines, class System, class T, class Inputs>
 TENDONLAB_INLINE auto couple_in_duals(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
                                       const Inputs& in) {
   constexpr int n = System::dof;
@@ -83,7 +66,7 @@ TENDONLAB_INLINE auto couple_in_duals(const System& system, const StateOf<System
     at.velocity[j] = variable<D>(y.at.velocity[j], n + static_cast<int>(j));
   }
   at.time = variable<D>(y.at.time, 2 * n);
-  return couple_for_step<repeats_text<System, T>>(system, at, frame.mode, in);
+  return couple_for_step<inlines>(system, at, frame.mode, in);
 }
 
 template <class T>
@@ -111,7 +94,7 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
   T z(0.0);
   if constexpr (has > 0) z = y.memory[m];
   const auto b = [&] {
-    if constexpr (repeats_text<System, T>)
+    if constexpr (inlines_laws<System>)
       return SlotBlocks<Slot, T, columns>(slot, coupled.port[i], z);
     else
       return slot_blocks<columns>(slot, coupled.port[i], z);
@@ -139,7 +122,7 @@ template <class System, class T, class Inputs>
 TENDONLAB_INLINE Arrowhead<System, T> linearise(const System& system, const StateOf<System, T>& y,
                                                 const Frame<System, T>& frame, const Inputs& in) {
   constexpr int n = System::dof, columns = 2 * n + 1, nz = memories<System>;
-  const auto c = couple_in_duals(system, y, frame, in);
+  const auto c = couple_in_duals<inlines_laws<System>>(system, y, frame, in);
   Arrowhead<System, T> a;
   for (std::size_t j = 0; j < n; ++j) {
     a.rate.acceleration[j] = c.applied[j].value;

@@ -41,6 +41,22 @@ struct State {
 };
 template <class System, class T>
 using StateOf = State<T, System::dof, memories<System>>;
+/// A state without its derivatives.
+template <class S, int dof, int nz>
+State<double, dof, nz> values(const State<S, dof, nz>& y) {
+  State<double, dof, nz> out;
+  for (std::size_t j = 0; j < dof; ++j) {
+    out.at.position[j] = plain(y.at.position[j]);
+    out.at.velocity[j] = plain(y.at.velocity[j]);
+  }
+  out.at.time = plain(y.at.time);
+  for (std::size_t i = 0; i < nz; ++i) out.memory[i] = plain(y.memory[i]);
+  return out;
+}
+template <int dof, int nz>
+const State<double, dof, nz>& values(const State<double, dof, nz>& y) {
+  return y;
+}
 template <class S, int dof, int nz>
 struct Rate {
   std::array<S, static_cast<std::size_t>(dof)> acceleration{};
@@ -77,10 +93,10 @@ TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& co
     return system;
 }
 
-/// Whether every stage of a step repeats the text of its system. That is faster for plain numbers in a system of few
-/// slots; elsewhere the call costs nothing against the work, and repeated text compiles for minutes.
-template <class System, class T>
-inline constexpr bool repeats_text = std::is_same_v<T, double> && (slots<System> < 5);
+/// Whether a step is one piece of code with its laws. In a system of many slots calls cost nothing against the work,
+/// and inlined text compiles for minutes.
+template <class System>
+inline constexpr bool inlines_laws = slots<System> < 5;
 
 /// `system.couple`, compiled once for each scalar.
 template <class System, class S, int n, class Modes, class Inputs>
@@ -113,7 +129,7 @@ template <class System, class T, class Inputs>
 TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
                                    const Inputs& in) {
   constexpr int n = System::dof;
-  constexpr bool inlines = repeats_text<System, T>;
+  constexpr bool inlines = inlines_laws<System>;
   const auto c = couple_for_step<inlines>(system, y.at, frame.mode, in);
   const auto& geometry = geometry_of(system, c);
   Rate<T, n, memories<System>> r;

@@ -11,8 +11,8 @@ class Instant {
   using F = Frame<System, T>;
 
  public:
-  Instant(const Contact<System, T>& with, const StateOf<System, T>& at, const F& modes, const Inputs& inputs)
-      : y(at), contact(with), frame(modes), in(inputs) {}
+  Instant(const Touching<System, T>& with, const StateOf<System, T>& at, const Inputs& inputs)
+      : y(at), contact(with.contact), frame(with.frame), in(inputs) {}
 
   /// What the ports see.
   const auto& coupled() {
@@ -56,42 +56,45 @@ class Recorder {
     for (std::size_t c = 0; c < channels; ++c)
       delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
-  template <class Inputs>
-  [[gnu::flatten]] void operator()(const Step<Y>& s, double start, double length, double taken,
-                                   const Contact<System, T>& contact, const Frame<System, T>& frame, const Inputs& in) {
-    const double reached = start + taken + 1e-12 * (1.0 + std::fabs(start)), per_length = 1.0 / length;
-    if (!late) {
+  /// Writes the samples of one step. `values` is the system without derivatives: what the ports do has none.
+  template <class Values, class Inputs>
+  [[gnu::flatten]] void operator()(const Step<Y>& s, const Interval& over, const Touching<System, T>& touching,
+                                   const Touching<Values, double>& plainly, const Inputs& in) {
+    const double reached = over.start + over.taken + 1e-12 * (1.0 + std::fabs(over.start));
+    const double per_length = 1.0 / over.length;
+    if (late)
+      write_late(s, over, reached, touching, in);
+    else
       for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
-        const Y y = state(s, T((time[next[0]] - start) * per_length), T(time[next[0]]));
-        Instant<System, T, Inputs> instant(contact, y, frame, in);
+        Y y = s.at((time[next[0]] - over.start) * per_length);
+        y.at.time = T(time[next[0]]);
+        Instant<System, T, Inputs> instant(touching, y, in);
         const auto seen = observe(instant);
         for (std::size_t c = 0; c < channels; ++c)
           out.write(c, next[0], system.sensor[c].apply(seen[c]), column, width);
-        if (records_ports) write_ports(next[0], instant);
       }
-    } else {
-      for (std::size_t c = 0; c < channels; ++c)
-        for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
-          const T then = time[next[c]] - delay[c], share = (then - start) * per_length;
-          const bool begun = plain(share) > 0;  // before the record all was as at its start
-          const Y y = state(s, begun ? share : T(0.0), begun ? then : T(start));
-          Instant<System, T, Inputs> instant(contact, y, frame, in);
-          out.write(c, next[c], system.sensor[c].apply(observe(instant)[c]), column, width);
-        }
-    }
-    if (!records_ports || !late) return;  // ports have no sensors
-    for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {
-      const Y y = state(s, T((time[next_port] - start) * per_length), T(time[next_port]));
-      Instant<System, T, Inputs> instant(contact, y, frame, in);
+    if (!records_ports) return;
+    for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {  // ports have no sensors
+      auto y = values(s).at((time[next_port] - over.start) * per_length);
+      y.at.time = time[next_port];
+      Instant<Values, double, Inputs> instant(plainly, y, in);
       write_ports(next_port, instant);
     }
   }
 
  private:
-  static Y state(const Step<Y>& s, const T& share, const T& now) {
-    Y y = s.at(share);
-    y.at.time = now;
-    return y;
+  template <class Inputs>
+  [[gnu::noinline]] void write_late(const Step<Y>& s, const Interval& over, double reached,
+                                    const Touching<System, T>& touching, const Inputs& in) {
+    for (std::size_t c = 0; c < channels; ++c)
+      for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
+        const T then = time[next[c]] - delay[c], share = (then - over.start) * (1.0 / over.length);
+        const bool begun = plain(share) > 0;  // before the record all was as at its start
+        Y y = s.at(begun ? share : T(0.0));
+        y.at.time = begun ? then : T(over.start);
+        Instant<System, T, Inputs> instant(touching, y, in);
+        out.write(c, next[c], system.sensor[c].apply(observe(instant)[c]), column, width);
+      }
   }
   template <class Inputs>
   auto observe(Instant<System, T, Inputs>& instant) const {
@@ -100,12 +103,11 @@ class Recorder {
     return system.observe(instant.y.at, acts, port);
   }
   /// Velocity, position, load and force of each port.
-  template <class Inputs>
-  void write_ports(std::size_t sample, Instant<System, T, Inputs>& instant) {
+  template <class Values, class Inputs>
+  [[gnu::noinline]] void write_ports(std::size_t sample, Instant<Values, double, Inputs>& instant) {
     unroll<ports>([&](auto i) {
       const auto& port = instant.coupled().port[i];
-      const double row[4] = {plain(port.velocity), plain(port.position), plain(port.load),
-                             plain(instant.template force<i>())};
+      const double row[4] = {port.velocity, port.position, port.load, instant.template force<i>()};
       for (std::size_t k = 0; k < 4; ++k)
         out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + sample] = row[k];
     });

@@ -15,7 +15,7 @@ class Jump {
   Jump(const Simulation& s, int mode, double toward) : happens(mode >= 0 || varies(s.drive.late)) {
     if constexpr (!std::is_same_v<T, double>) {
       if (!happens) return;
-      before = rate(s.system, s.y, s.frame, s.drive);
+      before = s.plain_rate();
       if (mode < 0)
         moves = s.drive.late;  // the delay of the command is a parameter, which moves the jump
       else
@@ -28,24 +28,20 @@ class Jump {
   void apply(Simulation& s) const {
     if constexpr (!std::is_same_v<T, double>) {
       if (!happens) return;
-      const auto after = rate(s.system, s.y, s.frame, s.drive);
-      for (std::size_t j = 0; j < n; ++j)
-        shift(s.y.at.velocity[j], plain(before.acceleration[j]) - plain(after.acceleration[j]));
-      for (std::size_t i = 0; i < nz; ++i) shift(s.y.memory[i], plain(before.memory[i]) - plain(after.memory[i]));
+      const auto after = s.plain_rate();
+      for (std::size_t j = 0; j < n; ++j) shift(s.y.at.velocity[j], before.acceleration[j] - after.acceleration[j]);
+      for (std::size_t i = 0; i < nz; ++i) shift(s.y.memory[i], before.memory[i] - after.memory[i]);
     } else {
       static_cast<void>(s);
     }
   }
 
  private:
-  void shift(T& x, double jump) const {
-    const T slope = jump * moves;
-    for (std::size_t i = 0; i < sizeof(x.d) / sizeof(x.d[0]); ++i) x.d[i] += slope.d[i];
-  }
+  void shift(T& x, double jump) const { x.d += (jump * moves).d; }
   /// dt/dp = -g_p / g_t of the guard g whose root the event is; its value is of no interest.
   template <class Simulation>
   T of_guard(const Simulation& s, int mode, double toward) const {
-    const double change = mode < modes<System> ? s.contact.guard_rate(mode, s.y, before, s.frame, s.drive) : 0.0;
+    const double change = mode < modes<System> ? s.guard_rate(mode, before) : 0.0;
     if (mode < System::directions) {
       if (s.frame.mode[static_cast<std::size_t>(mode)] == 0.0) return T(0.0);  // a release: the rate is continuous
       return quotient(s.contact.sliding_velocity(mode, s.y, s.frame, s.drive), change);
@@ -57,7 +53,7 @@ class Jump {
   static T quotient(const T& guard, double rate) { return rate == 0.0 ? T(0.0) : (-1.0 / rate) * guard; }
 
   bool happens;  ///< most inputs jump at instants that no parameter moves
-  Rate<T, n, nz> before;
+  Rate<double, n, nz> before;
   T moves{};
 };
 }  // namespace tendonlab::integrate

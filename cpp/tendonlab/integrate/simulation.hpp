@@ -1,22 +1,29 @@
 #pragma once
-// One simulation: step control, events on the dense output, landing on jumps of the inputs. Knows no physics.
+// One simulation: step control, events on the dense output, landing on jumps of the inputs. Knows no physics. Steps
+// carry the derivatives of `T`; whatever is decided is decided by plain numbers.
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/integrate/contact.hpp"
 #include "tendonlab/integrate/drive.hpp"
 #include "tendonlab/integrate/saltation.hpp"
 
 namespace tendonlab::integrate {
-template <class System, class T, class Tableau = Rodas4>
+template <template <class> class Of, class T, class Tableau = Rodas4>
 class Simulation {
+  using System = Of<T>;
+  using Values = Of<double>;
   static constexpr int n = System::dof, nz = memories<System>, num_modes = modes<System>, saturation = num_modes;
   using Y = StateOf<System, T>;
+  using PlainY = StateOf<Values, double>;
 
  public:
-  Simulation(const System& of, const Experiment& experiment, const Settings& with, Drive<T> inputs)
+  /// `plain`: the same system without derivatives.
+  Simulation(const System& of, const Values& plain, const Experiment& experiment, const Settings& with, Drive<T> inputs)
       : system(of),
+        plain_system(plain),
         settings(with),
         drive(std::move(inputs)),
         contact(of, drive),
+        decisions(plain, drive),
         t(experiment.time.front()),
         end(experiment.time.back()) {
     h = std::min(1e-4, 0.1 * (end - t));
@@ -24,7 +31,7 @@ class Simulation {
   }
   Y y;  ///< the initial state before `run`, the final one after it
 
-  /// Integrates to the last sample, handing each accepted step to `record(step, start, length, taken, contact, frame,
+  /// Integrates to the last sample, handing each accepted step to `record(step, interval, touching, plain touching,
   /// drive)`.
   template <class Record>
   void run(Trajectory& trajectory, Record&& record) {
@@ -45,7 +52,7 @@ class Simulation {
         shrink(length * std::max(0.15, -wish));
         continue;
       }
-      Crossing first = earliest_crossing(step);
+      const Crossing first = earliest_crossing(values(step));
       if (first.stale || (first.mode >= 0 && first.share < 0.97)) {  // dense output is less accurate inside a step
         ++trajectory.rejected;
         retakes = true;
@@ -61,7 +68,8 @@ class Simulation {
       }
       retakes = false;
       const double taken = first.mode >= 0 ? first.share * length : length;
-      record(step, t, length, taken, contact, frame, drive);
+      record(step, Interval{t, length, taken}, Touching<System, T>{contact, frame},
+             Touching<Values, double>{decisions, decided}, drive);
       if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
       y = first.mode >= 0 ? step.at(first.share) : step.to;
       t = first.mode < 0 && lands ? std::min(kink, end) : t + taken;
@@ -90,25 +98,26 @@ class Simulation {
   void start() {
     y.at.time = T(t);
     if constexpr (systems::stated<System> < n) system.begin(y.at, drive);
+    const PlainY& at = values(y);
     std::array<bool, num_modes> resting{};
     for (int m = 0; m < num_modes; ++m) {
       const auto i = static_cast<std::size_t>(m);
-      frame.mode[i] = m < System::directions ? 1.0 : 0.0;
-      if (!contact.guarded(m)) continue;
+      decided.mode[i] = m < System::directions ? 1.0 : 0.0;
+      if (!decisions.guarded(m)) continue;
       if (m < System::directions) {
-        const double v = plain(contact.sliding_velocity(m, y, frame, drive));
+        const double v = decisions.sliding_velocity(m, at, decided, drive);
         resting[i] = v == 0.0;
-        frame.mode[i] = v < 0 ? -1.0 : 1.0;
+        decided.mode[i] = v < 0 ? -1.0 : 1.0;
       } else {
-        const double g = plain(contact.stretch(m, y, frame, drive)), gap = plain(contact.half_gap(m));
-        frame.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
+        const double g = decisions.stretch(m, at, decided, drive), gap = decisions.half_gap(m);
+        decided.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
       }
     }
     drive.begin(y.at, t);
     drive.sample(y.at, t);
     if (drive.saturates()) drive.side = limit_side();
     kink = drive.next_kink(t);
-    contact.settle(y, frame, resting, drive);
+    settle(resting);
     refresh();
     arrive(false);
   }
@@ -142,20 +151,28 @@ class Simulation {
     return mean_square <= 1.0 ? std::min(6.0, factor) : -factor;
   }
 
-  double margin(int m, const Y& at, double toward) const {
-    if (m != saturation) return contact.margin(m, at, toward, frame, drive);
-    const double u = plain(drive.unlimited(at.at.position, at.at.velocity, at.at.time)), limit = drive.from.loop.limit;
+  /// Chooses what sticks, as `Sticking::settle` does, and fits the projection to the choice.
+  void settle(const std::array<bool, num_modes>& turning) {
+    decisions.settle(values(y), decided, turning, drive);
+    if constexpr (std::is_same_v<T, double>)
+      frame = decided;
+    else
+      contact.take_over(decided.mode, y, frame, drive);
+  }
+  double margin(int m, const PlainY& at, double toward) const {
+    if (m != saturation) return decisions.margin(m, at, toward, decided, drive);
+    const double u = drive.unlimited(at.at.position, at.at.velocity, at.at.time), limit = drive.from.loop.limit;
     return drive.side == 0.0 ? limit - std::fabs(u) : drive.side * u - limit;
   }
-  bool guarded(int m) const { return m == saturation ? drive.saturates() : contact.guarded(m); }
+  bool guarded(int m) const { return m == saturation ? drive.saturates() : decisions.guarded(m); }
 
-  Crossing earliest_crossing(const Step<Y>& s) const {
+  Crossing earliest_crossing(const Step<PlainY>& s) const {
     Crossing first;
     for (int m = 0; m <= saturation; ++m) {
       if (!guarded(m)) continue;
-      const double toward = contact.toward(m, s.to, frame, drive), after = margin(m, s.to, toward);
+      const double toward = decisions.toward(m, s.to, decided, drive), after = margin(m, s.to, toward);
       if (after >= -on_guard) continue;
-      const double before = margin(m, y, toward);
+      const double before = margin(m, s.from, toward);
       if (before <= on_guard) return {m, 0, toward, true};
       const double share = root(m, toward, s, before, after);
       if (share < first.share) first = {m, share, toward, false};
@@ -163,12 +180,12 @@ class Simulation {
     return first;
   }
   /// Illinois on the dense output; ends on a point that the secant chose, never on a midpoint.
-  double root(int m, double toward, const Step<Y>& s, double low_value, double high_value) const {
+  double root(int m, double toward, const Step<PlainY>& s, double low_value, double high_value) const {
     double low = 0, high = 1, at = low_value / (low_value - high_value);
     int side = 0;
     for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
-      Y state = s.at(at);
-      state.at.time = s.from.at.time + at * (plain(s.to.at.time) - plain(s.from.at.time));
+      PlainY state = s.at(at);
+      state.at.time = s.from.at.time + at * (s.to.at.time - s.from.at.time);
       const double f = margin(m, state, toward);
       if (std::fabs(f) <= 1e-14) break;
       if (f < 0) {
@@ -196,29 +213,35 @@ class Simulation {
     const int m = at.mode;
     std::array<bool, num_modes> turning{};
     if (m == saturation) {
-      const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time));
-      drive.side = drive.side == 0.0 ? std::copysign(1.0, u) : 0.0;
+      drive.side = drive.side == 0.0 ? std::copysign(1.0, unlimited()) : 0.0;
     } else if (m < System::directions) {
       turn_direction(m, turning);
     } else if constexpr (System::sides > 0) {
-      auto& side = frame.mode[static_cast<std::size_t>(m)];
+      auto& side = decided.mode[static_cast<std::size_t>(m)];
       side = side == 0.0 ? at.toward : 0.0;
     }
-    contact.settle(y, frame, turning, drive);
+    settle(turning);
   }
   void turn_direction(int m, std::array<bool, num_modes>& turning) {
     const auto i = static_cast<std::size_t>(m);
-    if (contact.only_turns(m, y, frame, drive)) {
-      frame.mode[i] = -frame.mode[i];
-    } else if (frame.mode[i] == 0.0) {
-      frame.mode[i] = plain(contact.holding(y, frame, drive)[i]) < 0 ? -1.0 : 1.0;
-    } else {
-      contact.rest(m, y, frame, drive);
+    const PlainY& at = values(y);
+    if (decisions.only_turns(m, at, decided, drive)) {
+      decided.mode[i] = -decided.mode[i];
+    } else if (decided.mode[i] == 0.0) {
+      decided.mode[i] = decisions.holding(at, decided, drive)[i] < 0 ? -1.0 : 1.0;
+    } else {  // at rest, by its value only: the derivatives at this instant stay
+      const auto excess = decisions.excess(m, at, decided, drive);
+      for (std::size_t j = 0; j < n; ++j)
+        if (excess[j] != 0.0) y.at.velocity[j] = y.at.velocity[j] - excess[j];
       turning[i] = true;
     }
   }
+  double unlimited() const {
+    const PlainY& at = values(y);
+    return drive.unlimited(at.at.position, at.at.velocity, at.at.time);
+  }
   double limit_side() const {
-    const double u = plain(drive.unlimited(y.at.position, y.at.velocity, y.at.time)), limit = drive.from.loop.limit;
+    const double u = unlimited(), limit = drive.from.loop.limit;
     return u > limit ? 1.0 : u < -limit ? -1.0 : 0.0;
   }
   void choose_again(const Crossing& at) {
@@ -227,7 +250,7 @@ class Simulation {
   }
   void pass_kink() {
     drive.pass_known(t);  // at an instant that no parameter moves
-    contact.settle(y, frame, {}, drive);
+    settle({});
     const Jump<System, T> jump(*this, -1, 0.0);
     const bool echoed = drive.hears_echo(t);  // an echo is smoother than its kink and is not passed on
     drive.pass_command(t);
@@ -235,7 +258,7 @@ class Simulation {
     drive.sample(y.at, t);
     if (drive.saturates()) drive.side = limit_side();
     kink = drive.next_kink(t);
-    contact.settle(y, frame, {}, drive);
+    settle({});
     jump.apply(*this);
     refresh();
   }
@@ -248,11 +271,11 @@ class Simulation {
   /// The scale of each memory follows the friction level that the memory replaces.
   void refresh() {
     if (!remembers) return;
-    const auto c = couple(system, y.at, frame.mode, drive);
+    const auto c = couple(plain_system, values(y).at, decided.mode, drive);
     unroll<slots<System>>([&](auto i) {
       if constexpr (SlotOf<System, i>::states > 0) {
-        const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
-        memory_level[i] = std::max(0.1 * memory_level[i], plain(slot.dry_level(c.port[i])));
+        const auto& slot = std::get<static_cast<std::size_t>(i)>(plain_system.slot);
+        memory_level[i] = std::max(0.1 * memory_level[i], slot.dry_level(c.port[i]));
       }
     });
   }
@@ -263,11 +286,21 @@ class Simulation {
                                     " s; the state is not finite or changes faster than doubles resolve"));
   }
 
+  /// The rate without derivatives, and how fast the guard of a mode changes while the state moves with it.
+  auto plain_rate() const { return rate(plain_system, values(y), decided, drive); }
+  template <class R>
+  double guard_rate(int mode, const R& rate) const {
+    return decisions.guard_rate(mode, values(y), rate, decided, drive);
+  }
+
   const System& system;
+  const Values& plain_system;
   const Settings& settings;
   Drive<T> drive;
-  Contact<System, T> contact;
+  const Contact<System, T> contact;
+  const Contact<Values, double> decisions;
   Frame<System, T> frame;
+  Frame<Values, double> decided;
   double t, end, h, kink = 0;
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?

@@ -36,34 +36,47 @@ struct Step {
   }
 };
 
+/// A step without its derivatives.
+template <class Y>
+auto values(const Step<Y>& s) {
+  return Step<std::decay_t<decltype(values(s.from))>>{values(s.from), values(s.to), values(s.first), values(s.second),
+                                                      values(s.error)};
+}
+template <int dof, int nz>
+const auto& values(const Step<State<double, dof, nz>>& s) {
+  return s;
+}
+
+/// Where a step lies in time, s: it starts at `start`, has a `length`, of which `taken` is used.
+struct Interval {
+  double start, length, taken;
+};
+
 /// The increment of stage `i`: (alpha - J) k_i = f(Y_i) + sum C_ij k_j / h + h d_i f_t.
-template <class Tableau, int i, class System, class T, class Y, class Inputs>
-TENDONLAB_INLINE Y stage(const System& system, const Y& y, const Frame<System, T>& frame, const Inputs& in, Plain<T> h,
-                         const Arrowhead<System, T>& blocks, const Elimination<System, T>& solver, const Y* k) {
+template <class Tableau, class System, class T, class Y, class Inputs>
+TENDONLAB_INLINE Y stage(int i, const System& system, const Y& y, const Frame<System, T>& frame, const Inputs& in,
+                         Plain<T> h, const Arrowhead<System, T>& blocks, const Elimination<System, T>& solver,
+                         const Y* k) {
   constexpr int n = System::dof, nz = memories<System>;
   Y at = y, r{};
-  unroll<i>([&](auto j) __attribute__((always_inline)) {
-    if constexpr (Tableau::A[i][j] != 0) add(at, Tableau::A[i][j], k[j]);
-    if constexpr (Tableau::C[i][j] != 0) add(r, Tableau::C[i][j], k[j]);
-  });
-  Rate<T, n, nz> f = blocks.rate;
-  if constexpr (i > 0) {
-    at.at.time = y.at.time + Tableau::c[i] * h;
-    if constexpr (repeats_text<System, T>)
-      f = inlined_rate(system, at, frame, in);
-    else
-      f = rate(system, at, frame, in);
+  for (int j = 0; j < i; ++j) {
+    add(at, Tableau::A[i][j], k[j]);
+    add(r, Tableau::C[i][j], k[j]);
   }
-  const Plain<T> per_h = 1.0 / h;
+  Rate<T, n, nz> f = blocks.rate;
+  if (i > 0) {
+    at.at.time = y.at.time + Tableau::c[i] * h;
+    f = inlined_rate(system, at, frame, in);
+  }
+  const Plain<T> per_h = 1.0 / h, drift = h * Tableau::d[i];
   for (std::size_t j = 0; j < n; ++j) {
     r.at.position[j] = r.at.position[j] * per_h + at.at.velocity[j];
     r.at.velocity[j] = r.at.velocity[j] * per_h + f.acceleration[j];
-    if constexpr (Tableau::d[i] != 0)
-      r.at.velocity[j] = r.at.velocity[j] + (h * Tableau::d[i]) * blocks.acceleration_by[j][2 * n];
+    if (Tableau::d[i] != 0) r.at.velocity[j] = r.at.velocity[j] + drift * blocks.acceleration_by[j][2 * n];
   }
   for (std::size_t m = 0; m < nz; ++m) {
     r.memory[m] = r.memory[m] * per_h + f.memory[m];
-    if constexpr (Tableau::d[i] != 0) r.memory[m] = r.memory[m] + (h * Tableau::d[i]) * blocks.memory_by[m][2 * n];
+    if (Tableau::d[i] != 0) r.memory[m] = r.memory[m] + drift * blocks.memory_by[m][2 * n];
   }
   return solver.solve(r);
 }
@@ -75,17 +88,14 @@ template <class Tableau, class System, class T, class Inputs>
   const auto blocks = linearise(system, y, frame, in);
   const Elimination<System, T> solver(blocks, h, Tableau::gamma);
   Y k[Tableau::stages];
-  unroll<Tableau::stages>([&](auto i) __attribute__((always_inline)) {
-    k[i] = stage<Tableau, i, System, T>(system, y, frame, in, h, blocks, solver, k);
-  });
+  for (int i = 0; i < Tableau::stages; ++i) k[i] = stage<Tableau>(i, system, y, frame, in, h, blocks, solver, k);
+  // Stiffly accurate: the last row of A, then the error.
   Step<Y> s{y, y, {}, {}, k[Tableau::stages - 1]};
-  unroll<Tableau::stages>([&](auto j)
-                              __attribute__((always_inline)) {  // stiffly accurate: the last row of A, then the error
-                                constexpr double b = j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0;
-                                add(s.to, b, k[j]);
-                                if constexpr (Tableau::D[0][j] != 0) add(s.first, Tableau::D[0][j], k[j]);
-                                if constexpr (Tableau::D[1][j] != 0) add(s.second, Tableau::D[1][j], k[j]);
-                              });
+  for (int j = 0; j < Tableau::stages; ++j) {
+    add(s.to, j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0, k[j]);
+    add(s.first, Tableau::D[0][j], k[j]);
+    add(s.second, Tableau::D[1][j], k[j]);
+  }
   s.to.at.time = y.at.time + h;
   return s;
 }

@@ -29,6 +29,15 @@ class Sticking : public ModeTable<System, T> {
     for (int a = 0; a < count; ++a) remove(frame, geometry, representative[stuck[a]]);
   }
 
+  /// Takes over modes that were decided elsewhere.
+  template <class Inputs>
+  void take_over(const decltype(F::mode)& modes, const Y& y, F& frame, const Inputs& in) const {
+    frame.mode = modes;
+    frame.holds = false;
+    for (int m = 0; m < directions; ++m)
+      if (directed[m] && mode_of(m, frame) == 0.0) return hold(frame, geometry(y, frame, in));
+  }
+
   /// Efforts that hold the sticking ports at rest, one per mode (0 where it slides): positive pushes backwards.
   template <class Inputs>
   std::array<T, directions> holding(const Y& y, const F& frame, const Inputs& in) const {
@@ -106,8 +115,13 @@ class Sticking : public ModeTable<System, T> {
   /// choose whether to stick or where to slide.
   template <class Inputs>
   void settle(const Y& y, F& frame, const std::array<bool, num_modes>& turning, const Inputs& in) const {
-    for (int m = 0; m < directions; ++m)
+    bool at_rest = false;
+    for (int m = 0; m < directions; ++m) {
       if (turning[m] && directed[m] && !prescribed[m]) frame.mode[m] = 0.0;
+      at_rest = at_rest || (directed[m] && frame.mode[m] == 0.0);
+    }
+    frame.holds = false;
+    if (!at_rest) return;
     const auto& geometry = this->geometry(y, frame, in);
     hold(frame, geometry);
     for (int round = 0; round <= directions && frame.holds; ++round) {

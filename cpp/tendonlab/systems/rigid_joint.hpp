@@ -17,7 +17,6 @@ struct RigidJoint : SystemDefaults {
       output("joint_angle", Dimension::displacement, "position of the joint").position_of(0),
       output("joint_velocity", Dimension::flow, "velocity of the joint")};
   static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
-  static constexpr int gradient_words = 2;
   static constexpr bool commanded = true, plain_names = true;
 
   std::tuple<Slot<T, friction::All>> slot;

@@ -20,12 +20,12 @@ struct ServoPendulum : SystemDefaults {
   static constexpr std::array inputs{
       input("target_angle", Dimension::displacement, Between::hold, "position that the servo is to take").required(),
       input("supply_voltage", Dimension::voltage, Between::linear, "largest voltage, in place of voltage_limit"),
-      input("torque_enable", Dimension::ratio, Between::hold, "1: the servo drives, 0: it coasts; 1 unless logged")};
+      input("torque_enable", Dimension::ratio, Between::hold,
+            "whether the servo drives (1) or coasts (0), 1 unless logged")};
   static constexpr std::array outputs{
       output("joint_angle", Dimension::displacement, "position of the joint").position_of(0),
       output("joint_velocity", Dimension::flow, "velocity of the joint")};
   static constexpr std::array<std::string_view, 2> nominal{"joint:coulomb", "joint:viscous"};
-  static constexpr int gradient_words = 2;
   static constexpr bool plain_names = true;
 
   std::tuple<Slot<T, friction::All>> slot;

@@ -112,7 +112,6 @@ struct SystemDefaults {
   static constexpr std::size_t carried = 0;         ///< numbers that a sampled system remembers besides its slots
   static constexpr bool commanded = false;          ///< input 0 is the command of an actuator: state effort_per_command
   static constexpr bool plain_names = false;        ///< parameters of nominal effects carry no element in front
-  static constexpr int gradient_words = 1;          ///< eights of derivatives in one simulation
   static constexpr std::string_view grown_by = {};  ///< the effect that replaces the system by its `Grown`
   static constexpr std::array<std::string_view, 0> structural{}, nominal{};  ///< effects always there, and by default
   static constexpr std::array<Renamed, 0> renamed{};

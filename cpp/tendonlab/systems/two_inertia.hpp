@@ -27,7 +27,6 @@ struct TwoInertia : SystemDefaults {
   static constexpr std::array<std::string_view, 1> structural{"cable:compliance"};
   static constexpr std::array<std::string_view, 4> nominal{"motor:coulomb", "motor:viscous", "joint:coulomb",
                                                            "joint:viscous"};
-  static constexpr int gradient_words = 2;
   static constexpr bool commanded = true;
 
   using Friction = Slot<T, friction::All>;

@@ -49,24 +49,6 @@ void for_each_place(System& system, F&& f) {
   for (auto& sensor : system.sensor) place(sensor);
 }
 
-template <class Law, class = void>
-struct PartnerOf {
-  static constexpr std::string_view name = Law::name;
-};
-template <class Law>
-struct PartnerOf<Law, std::void_t<decltype(Law::shares_with)>> {
-  static constexpr std::string_view name = Law::shares_with;
-};
-/// Whose parameter it is: its law, in an element. What the law's partner (`shares_with`) calls by the same name in the
-/// same element is one number, and the partner's.
-struct Holder {
-  std::string element;
-  std::string_view law, partner;
-  bool holds(const std::string& in_element, std::string_view of_law) const {
-    return in_element == element && (of_law == law || of_law == partner);
-  }
-};
-
 /// Calls f(field) for each parameter: the system's own, then those of the laws in each place.
 template <class System, class F>
 void for_each_field(System& system, F&& f) {
@@ -75,25 +57,5 @@ void for_each_field(System& system, F&& f) {
     for_each_parameter<std::decay_t<decltype(law)>>([&](const auto& p) { f(law.*p.field); });
   };
   for_each_place(system, [&](auto& laws, unsigned&) { std::apply([&](auto&... law) { (fields(law), ...); }, laws); });
-}
-
-template <class System>
-bool is_structural(const std::string& effect) {
-  for (const auto& name : System::structural)
-    if (effect == name) return true;
-  return false;
-}
-
-/// The public name of a parameter: <element>_<own name>, except where the system renames it or keeps its nominal
-/// effects plain.
-template <class System>
-std::string parameter_name(const std::string& element, std::string_view law, std::string_view own) {
-  if (element.empty()) return std::string(own);
-  for (const auto& other : System::renamed)
-    if (other.effect == element + ":" + std::string(law) && other.own == own) return std::string(other.name);
-  if (System::plain_names)
-    for (const auto& nominal : System::nominal)
-      if (nominal == element + ":" + std::string(law)) return std::string(own);
-  return element + "_" + std::string(own);
 }
 }  // namespace tendonlab::systems

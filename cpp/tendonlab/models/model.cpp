@@ -1,4 +1,4 @@
-#include "tendonlab/systems/model.hpp"
+#include "tendonlab/models/model.hpp"
 
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/systems/all.hpp"

@@ -1,0 +1,123 @@
+#include "tendonlab/models/describe.hpp"
+
+namespace tendonlab::systems {
+namespace {
+/// "bushing_1" as "bushing 1".
+std::string spaced(std::string name) {
+  for (char& c : name)
+    if (c == '_' || c == '.') c = ' ';
+  return name;
+}
+}  // namespace
+
+Describe::Describe(SystemFacts of) : system(std::move(of)) {
+  SystemInfo& info = made.info;
+  info.kind = system.name, info.equation = system.equation, info.dof = system.stated;
+  info.commanded = system.commanded, info.sampled = system.sampled, info.steady = system.steady;
+  info.inputs = system.inputs;
+  info.outputs = system.outputs;
+  for (const auto& port : system.ports)
+    info.ports.push_back({std::string(port.name), std::string(port.element), port.load});
+  for (const auto& name : system.nominal) info.nominal.emplace_back(name);
+}
+
+void Describe::add_own(const std::vector<Row>& parameters) {
+  for (const Row& p : parameters) made.parameter_of_field.push_back(add({}, {}, p));
+}
+
+void Describe::add_place(const std::string& name) {
+  element = name;
+  made.info.elements.push_back({element, axis(), place_words(), acts_on()});
+}
+
+void Describe::add_law(const LawFacts& law, const std::vector<Row>& parameters) {
+  const std::string name = effect_name(law.name);
+  EffectInfo effect{name,
+                    element,
+                    std::string(law.name),
+                    std::string(law.noun),
+                    std::string(law.noun) + " " + place_words(),
+                    std::string(law.equation),
+                    std::string(law.source),
+                    std::string(law.summary),
+                    {},
+                    {},
+                    law.roles,
+                    is_structural(name)};
+  for (const Row& p : parameters) {
+    made.parameter_of_field.push_back(add(law.name, law.partner, p));
+    const auto& owner = made.info.parameters[made.parameter_of_field.back()];
+    const std::string holding = owner.element + ":" + owner.effect;
+    if (owner.effect == law.name)
+      effect.parameters.push_back(owner.name);
+    else if (!is_structural(holding))  // structural effects are always there
+      effect.needs.push_back(holding);
+  }
+  made.info.effects.push_back(std::move(effect));
+}
+
+std::size_t Describe::add(std::string_view law, std::string_view partner, const Row& p) {
+  auto& all = made.info.parameters;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].own == p.name && all[i].element == element && (all[i].effect == law || all[i].effect == partner))
+      return i;
+  all.push_back(under_load({parameter_name(law, p.name), element, std::string(law), std::string(p.name), p.dimension,
+                            p.purpose, p.role, p.typical, p.lower, p.upper, std::string(p.meaning)}));
+  return all.size() - 1;
+}
+
+const Place* Describe::find_place() const {
+  for (const Place& place : system.places)
+    if (place.element == element) return &place;
+  for (const Place& place : usual_places)
+    if (place.element == element) return &place;
+  return nullptr;
+}
+std::string Describe::place_words() const {
+  if (const Place* place = find_place()) return std::string(place->words);
+  constexpr std::string_view sensor = "sensor.";
+  if (element.compare(0, sensor.size(), sensor) == 0)
+    return "of the " + spaced(element.substr(sensor.size())) + " sensor";
+  const bool numbered = '0' <= element.back() && element.back() <= '9';
+  return (numbered ? "in " : "in the ") + spaced(element);
+}
+std::string Describe::acts_on() const {
+  const Place* place = find_place();
+  for (const auto& port : system.ports)
+    if (port.element == element || (place != nullptr && port.element == place->acts_on))
+      return std::string(port.element);
+  return std::string(system.ports[0].element);
+}
+std::string Describe::axis() const {
+  for (const auto& port : system.ports)
+    if (port.element == element && port.axis != Axis::of_system) return port.axis == Axis::rotary ? "rotary" : "linear";
+  return {};
+}
+
+/// <element>_<own name>, except where the system renames it or keeps its nominal effects plain.
+std::string Describe::parameter_name(std::string_view law, std::string_view own) const {
+  if (element.empty()) return std::string(own);
+  for (const auto& other : system.renamed)
+    if (other.effect == effect_name(law) && other.own == own) return std::string(other.name);
+  if (system.plain_names)
+    for (const auto& nominal : system.nominal)
+      if (nominal == effect_name(law)) return std::string(own);
+  return element + "_" + std::string(own);
+}
+bool Describe::is_structural(const std::string& effect) const {
+  for (const auto& name : system.structural)
+    if (effect == name) return true;
+  return false;
+}
+/// The parameter with what an effort per load is under the load of its element.
+ParameterInfo Describe::under_load(ParameterInfo p) const {
+  if (p.dimension != Dimension::effort_per_load) return p;
+  for (const auto& port : system.ports)
+    if (port.element == p.element && port.load == Dimension::ratio) {
+      p.dimension = Dimension::effort, p.upper = inf;
+      return p;
+    }
+  p.dimension = Dimension::ratio;
+  return p;
+}
+}  // namespace tendonlab::systems

@@ -1,0 +1,80 @@
+#pragma once
+// One simulation of a system in one scalar: from numbers to a system, and through an experiment.
+#include <algorithm>
+
+#include "tendonlab/integrate/recorder.hpp"
+#include "tendonlab/integrate/sampling.hpp"
+#include "tendonlab/models/describe.hpp"
+
+namespace tendonlab::systems {
+using Seeds = std::vector<integrate::Seed>;
+
+/// What to simulate. `count` seeds from `first` on fill as many columns of the trajectory's gradient.
+struct Job {
+  const Description& described;
+  const Configuration& with;
+  const integrate::Experiment& experiment;
+  const integrate::Settings& settings;
+  const Seeds& seeds;
+  std::size_t first, count;
+  integrate::Trajectory& out;
+
+  bool shows_ports() const { return settings.ports && first == 0; }
+  /// Numbers with the derivatives of those that the seeds of a kind name.
+  template <class T>
+  std::vector<T> seeded(const std::vector<double>& plain, [[maybe_unused]] integrate::Seed::Of of) const {
+    std::vector<T> all(plain.begin(), plain.end());
+    if constexpr (!std::is_same_v<T, double>)
+      for (std::size_t k = 0; k < count; ++k)
+        if (const auto& seed = seeds[first + k]; seed.of == of)
+          all[static_cast<std::size_t>(seed.index)].seed(static_cast<int>(k), 1.0);
+    return all;
+  }
+};
+
+/// The system with the numbers of a job in it.
+template <class System, class T>
+System assemble(const Job& job) {
+  System system{};
+  const auto values = job.seeded<T>(job.with.values, integrate::Seed::Of::parameter);
+  auto next = job.described.parameter_of_field.begin();
+  for_each_field(system, [&](auto& field) { field = values[*next++]; });
+  std::size_t effect = 0;
+  for_each_place(system, [&](auto& laws, unsigned& active) {
+    for (unsigned law = 0; law < std::tuple_size_v<std::decay_t<decltype(laws)>>; ++law)
+      if (job.with.active[effect++]) active |= 1u << law;
+  });
+  share_slots(system, std::make_index_sequence<System::ports.size()>{});
+  system.prepare();
+  return system;
+}
+
+template <template <class> class Of, class T>
+void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) {
+  using System = Of<T>;
+  const auto& experiment = job.experiment;
+  const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
+  integrate::Simulation<Of, T> simulation(
+      system, plain, experiment, job.settings,
+      integrate::Drive<T>(experiment, system.actuation.delay(), sensor.delay(), sensor.bias()));
+  const auto position = job.seeded<T>(experiment.position, integrate::Seed::Of::position);
+  const auto velocity = job.seeded<T>(experiment.velocity, integrate::Seed::Of::velocity);
+  std::copy(position.begin(), position.end(), simulation.y.at.position.begin());
+  std::copy(velocity.begin(), velocity.end(), simulation.y.at.velocity.begin());
+  simulation.run(job.out, integrate::Recorder<System, T>(system, experiment, job.out, static_cast<int>(job.first),
+                                                         static_cast<int>(job.count), job.shows_ports()));
+}
+
+template <template <class> class Of, class T>
+void run(const Job& job) {
+  using System = Of<T>;
+  const System system = assemble<System, T>(job);
+  if constexpr (System::sampled)
+    integrate::Sampling<System, T>(system, job.experiment, job.out, static_cast<int>(job.first),
+                                   static_cast<int>(job.count), job.shows_ports());
+  else if constexpr (std::is_same_v<T, double>)
+    step_through<Of, T>(system, system, job);
+  else
+    step_through<Of, T>(system, assemble<Of<double>, double>(job), job);
+}
+}  // namespace tendonlab::systems
