@@ -94,7 +94,7 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
   T z(0.0);
   if constexpr (has > 0) z = y.memory[m];
   const auto b = [&] {
-    if constexpr (inlines_laws<System>)
+    if constexpr (inlines_laws<System, T>)
       return SlotBlocks<Slot, T, columns>(slot, coupled.port[i], z);
     else
       return slot_blocks<columns>(slot, coupled.port[i], z);
@@ -122,7 +122,7 @@ template <class System, class T, class Inputs>
 TENDONLAB_INLINE Arrowhead<System, T> linearise(const System& system, const StateOf<System, T>& y,
                                                 const Frame<System, T>& frame, const Inputs& in) {
   constexpr int n = System::dof, columns = 2 * n + 1, nz = memories<System>;
-  const auto c = couple_in_duals<inlines_laws<System>>(system, y, frame, in);
+  const auto c = couple_in_duals<inlines_laws<System, T>>(system, y, frame, in);
   Arrowhead<System, T> a;
   for (std::size_t j = 0; j < n; ++j) {
     a.rate.acceleration[j] = c.applied[j].value;

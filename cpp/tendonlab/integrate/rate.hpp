@@ -93,10 +93,10 @@ TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& co
     return system;
 }
 
-/// Whether a step is one piece of code with its laws. In a system of many slots calls cost nothing against the work,
-/// and inlined text compiles for minutes.
-template <class System>
-inline constexpr bool inlines_laws = slots<System> < 5;
+/// Whether a step is one piece of code with its laws: faster for plain numbers in a system of few slots. Elsewhere
+/// calls cost nothing against the work, and one copy of each law stays in the cache.
+template <class System, class T>
+inline constexpr bool inlines_laws = std::is_same_v<T, double> && (slots<System> < 5);
 
 /// `system.couple`, compiled once for each scalar.
 template <class System, class S, int n, class Modes, class Inputs>
@@ -129,7 +129,7 @@ template <class System, class T, class Inputs>
 TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
                                    const Inputs& in) {
   constexpr int n = System::dof;
-  constexpr bool inlines = inlines_laws<System>;
+  constexpr bool inlines = inlines_laws<System, T>;
   const auto c = couple_for_step<inlines>(system, y.at, frame.mode, in);
   const auto& geometry = geometry_of(system, c);
   Rate<T, n, memories<System>> r;

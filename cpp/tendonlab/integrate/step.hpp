@@ -66,7 +66,10 @@ TENDONLAB_INLINE Y stage(int i, const System& system, const Y& y, const Frame<Sy
   Rate<T, n, nz> f = blocks.rate;
   if (i > 0) {
     at.at.time = y.at.time + Tableau::c[i] * h;
-    f = inlined_rate(system, at, frame, in);
+    if constexpr (inlines_laws<System, T>)
+      f = inlined_rate(system, at, frame, in);
+    else
+      f = rate(system, at, frame, in);
   }
   const Plain<T> per_h = 1.0 / h, drift = h * Tableau::d[i];
   for (std::size_t j = 0; j < n; ++j) {
