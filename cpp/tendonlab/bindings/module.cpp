@@ -11,6 +11,12 @@ Array to_array(std::vector<double> values, std::vector<py::ssize_t> shape) {
 
 PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
+#ifdef TENDONLAB_NEEDS_AVX2
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+    throw py::import_error(
+        "this build of tendonlab needs a processor with AVX2; build it with -C "
+        "cmake.define.TENDONLAB_PROCESSOR=x86-64");
+#endif
   module.doc() = "The compiled core of tendonlab: laws, systems, simulation, identification.";
   // The Python package owns the error types; the core only raises them.
   py::register_exception_translator([](std::exception_ptr thrown) {
