@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tendonlab/core/chain.hpp"
-#include "tendonlab/models/model.hpp"
+#include "tendonlab/models/describe.hpp"
 
 namespace tendonlab::bindings {
 using Numbers = std::vector<double>;
@@ -26,30 +26,14 @@ class LawBox {
   virtual Numbers output(Numbers effort, double level) const = 0;
 };
 
-/// What a law states about itself.
-struct LawFacts {
-  std::string_view name, noun, equation, source, summary;
-  unsigned roles;
+/// What a law states about itself, and how it is made.
+struct LawFacts : systems::LawFacts {
   bool delays;
   std::vector<std::string> fields;  ///< of the port that the law sees
   std::vector<ParameterInfo> parameters;
   std::unique_ptr<const LawBox> (*make)(const Numbers& values);
 
   bool plays(unsigned wanted) const { return (roles & wanted) != 0; }
-  void add(const Parameter<LawFacts, double>& p) {
-    const std::string own(p.name);
-    parameters.push_back({own,
-                          {},
-                          std::string(name),
-                          own,
-                          p.dimension,
-                          p.purpose,
-                          p.role,
-                          p.typical,
-                          p.lower,
-                          p.upper,
-                          std::string(p.meaning)});
-  }
 };
 
 inline double sign_between(double above, double below) {
@@ -163,12 +147,10 @@ std::unique_ptr<const LawBox> make_box(const Numbers& values) {
 }
 template <class L>
 LawFacts facts_of() {
-  LawFacts facts{L::name,  L::noun,          L::equation, L::source, L::summary,
-                 L::roles, delays_signal<L>, {},          {},        &make_box<L>};
+  LawFacts facts{systems::law_facts<L>(), delays_signal<L>, {}, {}, &make_box<L>};
   PortOf<L>::type::for_each_field([&](std::string_view name, unsigned, auto) { facts.fields.emplace_back(name); });
-  for_each_parameter<L>([&](const auto& p) {
-    facts.add({nullptr, p.name, p.dimension, p.purpose, p.typical, p.lower, p.upper, p.meaning, p.role});
-  });
+  for (const systems::Row& row : systems::rows<L>())
+    facts.parameters.push_back(systems::parameter_info(row, std::string(row.name), {}, std::string(L::name)));
   return facts;
 }
 /// What makes the facts of each law of a list, in its order. Pointers keep compilers from inlining them all in one

@@ -41,7 +41,7 @@ struct Chain {
   template <class S>
   S apply(const S& signal) const {
     if (active == 0) return signal;
-    return along(signal, [&](const auto& alone) {
+    return by_chain_rule(signal, [&](const auto& alone) {
       using A = std::decay_t<decltype(alone)>;
       return apply(Passing<A>{alone, A{}});
     });

@@ -151,7 +151,7 @@ template <class T, int n>
 inline constexpr int partials<Dual<T, n>> = n;
 /// f(a) of one number: f runs on one partial, the chain rule gives the others.
 template <class S, class F>
-TENDONLAB_INLINE S along(const S& a, F f) {
+TENDONLAB_INLINE S by_chain_rule(const S& a, F f) {
   if constexpr (partials < S >> 1) {
     const auto one = f(variable<Dual<typename UnderOf<S>::type, 1>>(a.value, 0));
     return chain(one.value, one.d[0], a);

@@ -120,15 +120,15 @@ struct Slot {
     return dry;
   }
   /// Fields of a port that the laws look at.
-  static constexpr int looks = [] {
+  static constexpr int num_seen = [] {
     int n = 0;
     Sliding<double>::for_each_field([&](std::string_view, unsigned bit, auto) { n += (sees & bit) != 0; });
     return n;
   }();
   /// The port in Duals of what the laws look at, then of the state; `source` names the quantities that stand for it.
   template <class D>
-  TENDONLAB_INLINE auto by_fields(const Sliding<D>& at, const D* (&source)[looks + 1]) const {
-    using L = Dual<typename UnderOf<D>::type, looks + states>;
+  TENDONLAB_INLINE auto by_fields(const Sliding<D>& at, const D* (&source)[num_seen + 1]) const {
+    using L = Dual<typename UnderOf<D>::type, num_seen + states>;
     Sliding<L> own;
     own.direction = at.direction, own.side = at.side;
     int k = 0;
@@ -141,13 +141,13 @@ struct Slot {
   }
   template <class Port, class S = typename Port::Scalar>
   TENDONLAB_INLINE Response<S> respond(const Port& at, const S& z) const {
-    if constexpr (std::is_same_v<Port, Sliding<S>> && states == 0 && looks > 0 && (partials < S >> looks)) {
+    if constexpr (std::is_same_v<Port, Sliding<S>> && states == 0 && num_seen > 0 && (partials < S >> num_seen)) {
       if (active == 0) return {};
-      const S* source[looks + 1];
+      const S* source[num_seen + 1];
       const auto own = by_fields(at, source);
       const auto by_field = respond_at(own, lift<std::decay_t<decltype(own.velocity)>>(z.value)).force;
       S force = chain(by_field.value, by_field.d[0], *source[0]);
-      for (std::size_t k = 1; k < looks; ++k)
+      for (std::size_t k = 1; k < num_seen; ++k)
         for (std::size_t q = 0; q < force.d.size(); ++q) force.d[q] = force.d[q] + by_field.d[k] * source[k]->d[q];
       return {force, {}};
     } else {

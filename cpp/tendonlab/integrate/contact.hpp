@@ -105,7 +105,7 @@ class Contact : public Sticking<System, T> {
 };
 /// Ports at an instant: the modes, and what they stand for.
 template <class System, class T>
-struct Touching {
+struct PortModes {
   const Contact<System, T>& contact;
   const Frame<System, T>& frame;
 };

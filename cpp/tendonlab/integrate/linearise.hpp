@@ -16,33 +16,33 @@ struct Arrowhead {
 /// One slot's response and its partials by the columns of the system.
 template <class Slot, class T, int columns>
 struct SlotBlocks {
-  static constexpr int has = Slot::states, looks = Slot::looks;
+  static constexpr int has = Slot::states, num_seen = Slot::num_seen;
   Response<T> value;
   T force_by[columns], rate_by[columns], force_z{}, decay{};
 
   template <class D>
   TENDONLAB_INLINE SlotBlocks(const Slot& slot, const Sliding<D>& port, const T& z) {
-    const D* source[looks + 1];
+    const D* source[num_seen + 1];
     const auto own = slot.by_fields(port, source);
     using L = std::decay_t<decltype(own.velocity)>;
     L state(z);
-    if constexpr (has > 0) state.d[looks] = T(1.0);
+    if constexpr (has > 0) state.d[num_seen] = T(1.0);
     const Response<L> f = slot.respond(own, state);
     value = {f.force.value, f.rate.value};
     chain_rule(force_by, f.force, source);
     if constexpr (has > 0) {
       chain_rule(rate_by, f.rate, source);
-      force_z = f.force.d[looks];
-      decay = -f.rate.d[looks];
+      force_z = f.force.d[num_seen];
+      decay = -f.rate.d[num_seen];
     }
   }
 
  private:
   template <class L, class D>
-  static TENDONLAB_INLINE void chain_rule(T (&by)[columns], const L& f, const D* const (&source)[looks + 1]) {
+  static TENDONLAB_INLINE void chain_rule(T (&by)[columns], const L& f, const D* const (&source)[num_seen + 1]) {
     for (std::size_t q = 0; q < columns; ++q) {
       T sum = f.d[0] * source[0]->d[q];
-      for (std::size_t e = 1; e < looks; ++e) sum = sum + f.d[e] * source[e]->d[q];
+      for (std::size_t e = 1; e < num_seen; ++e) sum = sum + f.d[e] * source[e]->d[q];
       by[q] = sum;
     }
   }

@@ -11,7 +11,7 @@ class Instant {
   using F = Frame<System, T>;
 
  public:
-  Instant(const Touching<System, T>& with, const StateOf<System, T>& at, const Inputs& inputs)
+  Instant(const PortModes<System, T>& with, const StateOf<System, T>& at, const Inputs& inputs)
       : y(at), contact(with.contact), frame(with.frame), in(inputs) {}
 
   /// What the ports see.
@@ -56,19 +56,19 @@ class Recorder {
     for (std::size_t c = 0; c < channels; ++c)
       delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
-  /// Writes the samples of one step. `values` is the system without derivatives: what the ports do has none.
+  /// Writes the samples of one step. What the ports do is recorded without derivatives, from `plain_modes`.
   template <class Values, class Inputs>
-  [[gnu::flatten]] void operator()(const Step<Y>& s, const Interval& over, const Touching<System, T>& touching,
-                                   const Touching<Values, double>& plainly, const Inputs& in) {
+  [[gnu::flatten]] void operator()(const Step<Y>& s, const Interval& over, const PortModes<System, T>& port_modes,
+                                   const PortModes<Values, double>& plain_modes, const Inputs& in) {
     const double reached = over.start + over.taken + 1e-12 * (1.0 + std::fabs(over.start));
     const double per_length = 1.0 / over.length;
     if (late)
-      write_late(s, over, reached, touching, in);
+      write_late(s, over, reached, port_modes, in);
     else
       for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
         Y y = s.at((time[next[0]] - over.start) * per_length);
         y.at.time = T(time[next[0]]);
-        Instant<System, T, Inputs> instant(touching, y, in);
+        Instant<System, T, Inputs> instant(port_modes, y, in);
         const auto seen = observe(instant);
         for (std::size_t c = 0; c < channels; ++c)
           out.write(c, next[0], system.sensor[c].apply(seen[c]), column, width);
@@ -77,7 +77,7 @@ class Recorder {
     for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {  // ports have no sensors
       auto y = values(s).at((time[next_port] - over.start) * per_length);
       y.at.time = time[next_port];
-      Instant<Values, double, Inputs> instant(plainly, y, in);
+      Instant<Values, double, Inputs> instant(plain_modes, y, in);
       write_ports(next_port, instant);
     }
   }
@@ -85,14 +85,14 @@ class Recorder {
  private:
   template <class Inputs>
   [[gnu::noinline]] void write_late(const Step<Y>& s, const Interval& over, double reached,
-                                    const Touching<System, T>& touching, const Inputs& in) {
+                                    const PortModes<System, T>& port_modes, const Inputs& in) {
     for (std::size_t c = 0; c < channels; ++c)
       for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
         const T then = time[next[c]] - delay[c], share = (then - over.start) * (1.0 / over.length);
         const bool begun = plain(share) > 0;  // before the record all was as at its start
         Y y = s.at(begun ? share : T(0.0));
         y.at.time = begun ? then : T(over.start);
-        Instant<System, T, Inputs> instant(touching, y, in);
+        Instant<System, T, Inputs> instant(port_modes, y, in);
         out.write(c, next[c], system.sensor[c].apply(observe(instant)[c]), column, width);
       }
   }

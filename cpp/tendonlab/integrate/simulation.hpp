@@ -23,7 +23,7 @@ class Simulation {
         settings(with),
         drive(std::move(inputs)),
         contact(of, drive),
-        decisions(plain, drive),
+        plain_contact(plain, drive),
         t(experiment.time.front()),
         end(experiment.time.back()) {
     h = std::min(1e-4, 0.1 * (end - t));
@@ -31,7 +31,7 @@ class Simulation {
   }
   Y y;  ///< the initial state before `run`, the final one after it
 
-  /// Integrates to the last sample, handing each accepted step to `record(step, interval, touching, plain touching,
+  /// Integrates to the last sample, handing each accepted step to `record(step, interval, port modes, plain port modes,
   /// drive)`.
   template <class Record>
   void run(Trajectory& trajectory, Record&& record) {
@@ -68,8 +68,8 @@ class Simulation {
       }
       retakes = false;
       const double taken = first.mode >= 0 ? first.share * length : length;
-      record(step, Interval{t, length, taken}, Touching<System, T>{contact, frame},
-             Touching<Values, double>{decisions, decided}, drive);
+      record(step, Interval{t, length, taken}, PortModes<System, T>{contact, frame},
+             PortModes<Values, double>{plain_contact, plain_frame}, drive);
       if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
       y = first.mode >= 0 ? step.at(first.share) : step.to;
       t = first.mode < 0 && lands ? std::min(kink, end) : t + taken;
@@ -102,15 +102,15 @@ class Simulation {
     std::array<bool, num_modes> resting{};
     for (int m = 0; m < num_modes; ++m) {
       const auto i = static_cast<std::size_t>(m);
-      decided.mode[i] = m < System::directions ? 1.0 : 0.0;
-      if (!decisions.guarded(m)) continue;
+      plain_frame.mode[i] = m < System::directions ? 1.0 : 0.0;
+      if (!plain_contact.guarded(m)) continue;
       if (m < System::directions) {
-        const double v = decisions.sliding_velocity(m, at, decided, drive);
+        const double v = plain_contact.sliding_velocity(m, at, plain_frame, drive);
         resting[i] = v == 0.0;
-        decided.mode[i] = v < 0 ? -1.0 : 1.0;
+        plain_frame.mode[i] = v < 0 ? -1.0 : 1.0;
       } else {
-        const double g = decisions.stretch(m, at, decided, drive), gap = decisions.half_gap(m);
-        decided.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
+        const double g = plain_contact.stretch(m, at, plain_frame, drive), gap = plain_contact.half_gap(m);
+        plain_frame.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;
       }
     }
     drive.begin(y.at, t);
@@ -153,24 +153,24 @@ class Simulation {
 
   /// Chooses what sticks, as `Sticking::settle` does, and fits the projection to the choice.
   void settle(const std::array<bool, num_modes>& turning) {
-    decisions.settle(values(y), decided, turning, drive);
+    plain_contact.settle(values(y), plain_frame, turning, drive);
     if constexpr (std::is_same_v<T, double>)
-      frame = decided;
+      frame = plain_frame;
     else
-      contact.take_over(decided.mode, y, frame, drive);
+      contact.take_over(plain_frame.mode, y, frame, drive);
   }
   double margin(int m, const PlainY& at, double toward) const {
-    if (m != saturation) return decisions.margin(m, at, toward, decided, drive);
+    if (m != saturation) return plain_contact.margin(m, at, toward, plain_frame, drive);
     const double u = drive.unlimited(at.at.position, at.at.velocity, at.at.time), limit = drive.from.loop.limit;
     return drive.side == 0.0 ? limit - std::fabs(u) : drive.side * u - limit;
   }
-  bool guarded(int m) const { return m == saturation ? drive.saturates() : decisions.guarded(m); }
+  bool guarded(int m) const { return m == saturation ? drive.saturates() : plain_contact.guarded(m); }
 
   Crossing earliest_crossing(const Step<PlainY>& s) const {
     Crossing first;
     for (int m = 0; m <= saturation; ++m) {
       if (!guarded(m)) continue;
-      const double toward = decisions.toward(m, s.to, decided, drive), after = margin(m, s.to, toward);
+      const double toward = plain_contact.toward(m, s.to, plain_frame, drive), after = margin(m, s.to, toward);
       if (after >= -on_guard) continue;
       const double before = margin(m, s.from, toward);
       if (before <= on_guard) return {m, 0, toward, true};
@@ -217,7 +217,7 @@ class Simulation {
     } else if (m < System::directions) {
       turn_direction(m, turning);
     } else if constexpr (System::sides > 0) {
-      auto& side = decided.mode[static_cast<std::size_t>(m)];
+      auto& side = plain_frame.mode[static_cast<std::size_t>(m)];
       side = side == 0.0 ? at.toward : 0.0;
     }
     settle(turning);
@@ -225,12 +225,12 @@ class Simulation {
   void turn_direction(int m, std::array<bool, num_modes>& turning) {
     const auto i = static_cast<std::size_t>(m);
     const PlainY& at = values(y);
-    if (decisions.only_turns(m, at, decided, drive)) {
-      decided.mode[i] = -decided.mode[i];
-    } else if (decided.mode[i] == 0.0) {
-      decided.mode[i] = decisions.holding(at, decided, drive)[i] < 0 ? -1.0 : 1.0;
+    if (plain_contact.only_turns(m, at, plain_frame, drive)) {
+      plain_frame.mode[i] = -plain_frame.mode[i];
+    } else if (plain_frame.mode[i] == 0.0) {
+      plain_frame.mode[i] = plain_contact.holding(at, plain_frame, drive)[i] < 0 ? -1.0 : 1.0;
     } else {  // at rest, by its value only: the derivatives at this instant stay
-      const auto excess = decisions.excess(m, at, decided, drive);
+      const auto excess = plain_contact.excess(m, at, plain_frame, drive);
       for (std::size_t j = 0; j < n; ++j)
         if (excess[j] != 0.0) y.at.velocity[j] = y.at.velocity[j] - excess[j];
       turning[i] = true;
@@ -271,7 +271,7 @@ class Simulation {
   /// The scale of each memory follows the friction level that the memory replaces.
   void refresh() {
     if (!remembers) return;
-    const auto c = couple(plain_system, values(y).at, decided.mode, drive);
+    const auto c = couple(plain_system, values(y).at, plain_frame.mode, drive);
     unroll<slots<System>>([&](auto i) {
       if constexpr (SlotOf<System, i>::states > 0) {
         const auto& slot = std::get<static_cast<std::size_t>(i)>(plain_system.slot);
@@ -287,10 +287,10 @@ class Simulation {
   }
 
   /// The rate without derivatives, and how fast the guard of a mode changes while the state moves with it.
-  auto plain_rate() const { return rate(plain_system, values(y), decided, drive); }
+  auto plain_rate() const { return rate(plain_system, values(y), plain_frame, drive); }
   template <class R>
   double guard_rate(int mode, const R& rate) const {
-    return decisions.guard_rate(mode, values(y), rate, decided, drive);
+    return plain_contact.guard_rate(mode, values(y), rate, plain_frame, drive);
   }
 
   const System& system;
@@ -298,9 +298,9 @@ class Simulation {
   const Settings& settings;
   Drive<T> drive;
   const Contact<System, T> contact;
-  const Contact<Values, double> decisions;
+  const Contact<Values, double> plain_contact;
   Frame<System, T> frame;
-  Frame<Values, double> decided;
+  Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?

@@ -10,6 +10,12 @@ std::string spaced(std::string name) {
 }
 }  // namespace
 
+ParameterInfo parameter_info(const Row& p, const std::string& name, const std::string& element,
+                             const std::string& law) {
+  return {name,      element, law,     std::string(p.name),   p.dimension, p.purpose, p.role,
+          p.typical, p.lower, p.upper, std::string(p.meaning)};
+}
+
 Describe::Describe(SystemFacts of) : system(std::move(of)) {
   SystemInfo& info = made.info;
   info.kind = system.name, info.equation = system.equation, info.dof = system.stated;
@@ -61,8 +67,7 @@ std::size_t Describe::add(std::string_view law, std::string_view partner, const 
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].own == p.name && all[i].element == element && (all[i].effect == law || all[i].effect == partner))
       return i;
-  all.push_back(under_load({parameter_name(law, p.name), element, std::string(law), std::string(p.name), p.dimension,
-                            p.purpose, p.role, p.typical, p.lower, p.upper, std::string(p.meaning)}));
+  all.push_back(under_load(parameter_info(p, parameter_name(law, p.name), element, std::string(law))));
   return all.size() - 1;
 }
 

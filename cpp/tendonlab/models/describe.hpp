@@ -41,6 +41,9 @@ struct SystemFacts {
   std::vector<Place> places;
 };
 
+/// A parameter under its public name, of a law in an element.
+ParameterInfo parameter_info(const Row& p, const std::string& name, const std::string& element, const std::string& law);
+
 /// Builds a description, fact by fact.
 class Describe {
  public:

@@ -14,8 +14,7 @@ class ModelOf final : public Model {
     if constexpr (Of<double>::sampled) {
       return {{}, 0.0, 1.0};
     } else {
-      integrate::Trajectory none;
-      const auto system = systems::assemble<Of<double>, double>({description, with, {}, {}, {}, 0, 0, none});
+      const auto system = systems::assemble<Of<double>, double>({description, with, {}, 0, 0});
       const auto shape = system.rigid_shape();
       RigidMotion rigid{{shape.begin(), shape.end()}, 0.0, 1.0};
       if constexpr (Of<double>::commanded) rigid.effort_per_command = system.effort_per_command();
@@ -35,10 +34,10 @@ class ModelOf final : public Model {
     out.value.assign(cells, 0.0);
     out.gradient.assign(cells * seeds.size(), 0.0);
     if (settings.ports) out.port.assign(Of<double>::ports.size() * 4 * experiment.time.size(), 0.0);
-    if (seeds.empty()) systems::run<Of, double>({description, with, experiment, settings, seeds, 0, 0, out});
+    if (seeds.empty()) systems::run<Of, double>({{description, with, seeds, 0, 0}, experiment, settings, out});
     for (std::size_t first = 0; first < seeds.size(); first += Gradient::width) {
       const auto count = std::min<std::size_t>(seeds.size() - first, Gradient::width);
-      systems::run<Of, Gradient>({description, with, experiment, settings, seeds, first, count, out});
+      systems::run<Of, Gradient>({{description, with, seeds, first, count}, experiment, settings, out});
     }
     return out;
   }

@@ -9,17 +9,13 @@
 namespace tendonlab::systems {
 using Seeds = std::vector<integrate::Seed>;
 
-/// What to simulate. `count` seeds from `first` on fill as many columns of the trajectory's gradient.
-struct Job {
+/// The numbers of a system, with derivatives by `count` seeds from `first` on.
+struct Assembly {
   const Description& described;
   const Configuration& with;
-  const integrate::Experiment& experiment;
-  const integrate::Settings& settings;
   const Seeds& seeds;
   std::size_t first, count;
-  integrate::Trajectory& out;
 
-  bool shows_ports() const { return settings.ports && first == 0; }
   /// Numbers with the derivatives of those that the seeds of a kind name.
   template <class T>
   std::vector<T> seeded(const std::vector<double>& plain, [[maybe_unused]] integrate::Seed::Of of) const {
@@ -31,18 +27,26 @@ struct Job {
     return all;
   }
 };
+/// What to simulate. The seeds fill as many columns of the trajectory's gradient.
+struct Job : Assembly {
+  const integrate::Experiment& experiment;
+  const integrate::Settings& settings;
+  integrate::Trajectory& out;
 
-/// The system with the numbers of a job in it.
+  bool shows_ports() const { return settings.ports && first == 0; }
+};
+
+/// The system with these numbers in it.
 template <class System, class T>
-System assemble(const Job& job) {
+System assemble(const Assembly& of) {
   System system{};
-  const auto values = job.seeded<T>(job.with.values, integrate::Seed::Of::parameter);
-  auto next = job.described.parameter_of_field.begin();
+  const auto values = of.seeded<T>(of.with.values, integrate::Seed::Of::parameter);
+  auto next = of.described.parameter_of_field.begin();
   for_each_field(system, [&](auto& field) { field = values[*next++]; });
   std::size_t effect = 0;
   for_each_place(system, [&](auto& laws, unsigned& active) {
     for (unsigned law = 0; law < std::tuple_size_v<std::decay_t<decltype(laws)>>; ++law)
-      if (job.with.active[effect++]) active |= 1u << law;
+      if (of.with.active[effect++]) active |= 1u << law;
   });
   share_slots(system, std::make_index_sequence<System::ports.size()>{});
   system.prepare();

@@ -45,15 +45,9 @@ struct RigidJoint : SystemDefaults {
   T effort_per_command() const { return torque_constant; }
   template <class S, class Modes, class Inputs>
   Coupling<S, 1, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
-    Coupling<S, 1, 1> c;
     const S motor = actuation.apply(S(torque_constant * in.command(at)));
     const S gravity = gravity_torque * sin(at.position[0]), known = load.apply(in.template input<1>(at.time));
-    c.port[0].velocity = at.velocity[0];
-    c.port[0].position = at.position[0];
-    c.port[0].load = 0.5 * (motor + gravity - known);  // mean of what the motor delivers and the load takes
-    c.port[0].direction = mode[0];
-    c.applied[0] = motor - gravity + known;
-    return c;
+    return single_joint(at, mode[0], motor, gravity, known);
   }
   template <class S, class Force, class PortAt>
   std::array<S, 2> observe(const Motion<S, 1>& at, const Force&, const PortAt&) const {

@@ -66,16 +66,10 @@ struct ServoPendulum : SystemDefaults {
   std::array<T, dof> rigid_shape() const { return {T(1.0)}; }
   template <class S, class Modes, class Inputs>
   Coupling<S, 1, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
-    Coupling<S, 1, 1> c;
     S motor = actuation.apply(torque(at, in));
     if (in.template given<2>()) motor = in.template input<2>(at.time) * motor;
     const S gravity = gravity_torque * sin(at.position[0]), known = load.apply(S{});
-    c.port[0].velocity = at.velocity[0];
-    c.port[0].position = at.position[0];
-    c.port[0].load = 0.5 * (motor + gravity - known);  // mean of what the motor delivers and the load takes
-    c.port[0].direction = mode[0];
-    c.applied[0] = motor - gravity + known;
-    return c;
+    return single_joint(at, mode[0], motor, gravity, known);
   }
   template <class S, class Force, class PortAt>
   std::array<S, 2> observe(const Motion<S, 1>& at, const Force&, const PortAt&) const {

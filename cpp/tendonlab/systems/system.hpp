@@ -31,6 +31,19 @@ struct MovingCoupling : Coupling<S, ports, n> {
   S lever[ports][n]{};
   std::array<S, n> inverse_inertia{};
 };
+/// One joint that a motor turns against gravity, with what is known to act on it. Its friction sees the mean of what
+/// the motor delivers and the load takes.
+template <class S>
+Coupling<S, 1, 1> single_joint(const Motion<S, 1>& at, const Plain<S>& direction, const S& motor, const S& gravity,
+                               const S& known) {
+  Coupling<S, 1, 1> c;
+  c.port[0].velocity = at.velocity[0];
+  c.port[0].position = at.position[0];
+  c.port[0].load = 0.5 * (motor + gravity - known);
+  c.port[0].direction = direction;
+  c.applied[0] = motor - gravity + known;
+  return c;
+}
 enum class Axis { of_system, rotary, linear };
 /// Where a slot sits. Written with words: `port("bushing_1").along(Axis::linear).turns(motor_sense)`. -1 is no mode.
 struct Port {
