@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.simulation.catalog import SystemInfo, unit
-from tendonlab.simulation.equality import same_fields
+from tendonlab.simulation.equality import EqualByFields
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trajectory:
+class Trajectory(EqualByFields):
     """A simulated run; `run["joint_angle"]` is one output. `outputs`: by time "t", s, with one column per signal, SI.
 
     `units`: of each output. `ports`: a frame with columns (port, "velocity" | "position" | "load" | "force") where it
@@ -54,11 +54,6 @@ class Trajectory:
     def to_dict(self) -> dict[str, Any]:
         """Time and outputs as lists."""
         return {"t": self.outputs.index.tolist(), **{str(c): self.outputs[c].tolist() for c in self.outputs.columns}}
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, Trajectory) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # its frames can be changed
 
     def __repr__(self) -> str:
         time = self.outputs.index
