@@ -49,7 +49,7 @@ double number_of(const ParameterInfo& p, const py::object& given) {
     throw ParameterError(sentence(p.name, " = ", shown(given), ": expected a number, ", both_units(p.dimension)));
   }
 }
-Law make(const py::capsule& facts, const py::dict& given) {
+Law make_law(const py::capsule& facts, const py::dict& given) {
   const LawFacts* of = facts.get_pointer<const LawFacts>();
   refuse_unknown(*of, given);
   Numbers values;
@@ -292,7 +292,7 @@ py::object class_of(const LawFacts& of, const py::object& base, const py::module
 }
 py::object bind_base(py::module_& module) {
   return py::class_<Law>(module, "Law", "What all law classes share.")
-      .def(py::init(&make))
+      .def(py::init(&make_law))
       .def("__repr__", &represent)
       .def("__eq__", &equal)
       .def("__hash__", &hash)
