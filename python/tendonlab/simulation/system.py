@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
+from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -43,7 +44,7 @@ class System:
         object.__setattr__(self, "effects", tuple(self.effects))
         for name in self.effects:
             self._require_company(name)
-        known = self._own_names()
+        known = self._own_names
         for name, value in self.parameters.items():
             if name not in known:
                 offer = expected_one_of(name, known)
@@ -90,13 +91,17 @@ class System:
 
     def values(self) -> list[float]:
         """One value per parameter of the core, in its order; effects that are off get any allowed number."""
-        own = set(self._own_names())
-        return [
+        return list(self._values)
+
+    @cached_property
+    def _values(self) -> tuple[float, ...]:
+        own = set(self._own_names)
+        return tuple(
             float(self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0))
             if p.name in own
             else min(max(0.0 if p.purpose == "amplitude" else p.typical, p.lower), p.upper)
             for p in self.info.parameters
-        ]
+        )
 
     def active(self, *, keep_zero: bool = False) -> list[bool]:
         """One flag per effect of the core. An effect whose amplitude is exactly 0 is off, unless `keep_zero`."""
@@ -138,7 +143,7 @@ class System:
         """The simulator with the conditions of an experiment and its additions; other names are covariates."""
         added = {n: self.parameters[n] + more for n, more in experiment.add.items() if n in self.parameters}
         fixed = {n: value for n, value in experiment.conditions.items() if n in self.parameters}
-        return self.with_parameters({**added, **fixed})
+        return self.with_parameters({**added, **fixed}) if added or fixed else self
 
     def to_dict(self) -> dict[str, Any]:
         """Kind, axis, effects and parameters as plain types."""
@@ -175,6 +180,7 @@ class System:
         row = self.info.parameter(name)
         return within(name, value, row.lower, row.upper, self.unit(name))
 
+    @cached_property
     def _own_names(self) -> list[str]:
         """Parameters of the system itself, of what is structural, and of its effects."""
         info = self.info

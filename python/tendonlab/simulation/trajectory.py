@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.errors import ParameterError, expected_one_of
@@ -71,12 +72,19 @@ def trajectory_of(run: dict[str, Any], info: SystemInfo, *, axis: str, time: np.
     index = pd.Index(time, name="t")
     units = {s.name: unit(s.dimension, axis) for s in info.outputs}
     return Trajectory(
-        outputs=pd.DataFrame(run["outputs"].T, index=index, columns=list(units)),
+        outputs=pd.DataFrame(run["outputs"].T, index=index, columns=_columns(info)),
         units=units,
         ports=_port_frame(run["ports"], info, index) if "ports" in run else None,
         num_attempts=run["attempts"],
         num_events=run["events"],
     )
+
+
+@cache
+def _columns(info: SystemInfo) -> pd.Index[str]:
+    import pandas as pd
+
+    return pd.Index([s.name for s in info.outputs])
 
 
 def _port_frame(ports: np.ndarray, info: SystemInfo, index: pd.Index[float]) -> pd.DataFrame:
