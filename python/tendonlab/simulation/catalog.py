@@ -13,7 +13,7 @@ from tendonlab.errors import ParameterError, expected_one_of
 __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInfo", "PortInfo", "SystemInfo"]
 
 AXES = ("rotary", "linear")
-LEVEL, MEMORY, REFINES, WHOLE = 2, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
+LEVEL, FACTOR, MEMORY, REFINES, WHOLE = 2, 4, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
 DIMENSIONS = _core.dimensions()
 Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)
 
