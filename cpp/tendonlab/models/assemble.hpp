@@ -25,7 +25,10 @@ template <class System>
 std::vector<std::string> place_names() {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < System::ports.size(); ++i)
-    if (first_port<System>(i) == i) names.emplace_back(System::ports[i].element);
+    if (first_port<System>(i) == i) {
+      names.emplace_back(System::ports[i].element);
+      if (System::ports[i].element == System::passing) names.emplace_back(System::passing);
+    }
   if constexpr (decltype(System::load)::size > 0) names.emplace_back("load");
   if constexpr (decltype(System::actuation)::size > 0) names.emplace_back("actuation");
   if constexpr (decltype(System::sensor)::value_type::size > 0)
@@ -40,7 +43,11 @@ void for_each_place(System& system, F&& f) {
   };
   std::size_t i = 0;
   const auto slot = [&](auto& of) {
-    if (first_port<System>(i) == i) f(of.laws, of.active);
+    if (first_port<System>(i) == i) {
+      f(of.laws, of.active);
+      if constexpr (!System::passing.empty())
+        if (System::ports[i].element == System::passing) place(system.passed);
+    }
     ++i;
   };
   std::apply([&](auto&... each) { (slot(each), ...); }, system.slot);

@@ -32,6 +32,7 @@ void Describe::add_own(const std::vector<Row>& parameters) {
 }
 
 void Describe::add_place(const std::string& name) {
+  if (element == name) return;  // the laws of the effort that an element passes on follow those of its slot
   element = name;
   made.info.elements.push_back({element, axis(), place_words(), acts_on()});
 }

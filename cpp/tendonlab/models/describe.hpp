@@ -98,7 +98,7 @@ constexpr int states_of(const std::tuple<Slot...>*) {
 template <class System>
 constexpr bool is_steady() {
   if constexpr (System::sampled)
-    return states_of(static_cast<decltype(System::slot)*>(nullptr)) == 0 && System::carried == 0;
+    return states_of(static_cast<decltype(System::slot)*>(nullptr)) == 0 && std::is_empty_v<typename System::Carried>;
   else
     return false;
 }

@@ -122,13 +122,14 @@ struct SystemDefaults {
   static constexpr int driver = -1;                 ///< the input that, where given, drives ports `while_driven`
   static constexpr bool moving = false;             ///< levers and inverse inertias change with the motion
   static constexpr bool sampled = false;            ///< answers sample by sample, without a differential equation
-  static constexpr std::size_t carried = 0;         ///< numbers that a sampled system remembers besides its slots
   static constexpr bool commanded = false;          ///< input 0 is the command of an actuator: state effort_per_command
   static constexpr bool plain_names = false;        ///< parameters of nominal effects carry no element in front
   static constexpr std::string_view grown_by = {};  ///< the effect that replaces the system by its `Grown`
   static constexpr std::array<std::string_view, 0> structural{}, nominal{};  ///< effects always there, and by default
   static constexpr std::array<Renamed, 0> renamed{};
   static constexpr std::array<Place, 0> places{};  ///< words for its own elements
+  static constexpr std::string_view passing{};     ///< element whose effort passes the laws of a Chain `passed`
+  struct Carried {};                               ///< what a sampled system remembers besides its slots
   void prepare() {}
 };
 
