@@ -250,6 +250,17 @@ def simulate(
     seeds: Sequence[tuple[str, int]],
     settings: Settings,
 ) -> dict[str, Any]: ...
+def simulate_many(
+    kind: str,
+    values: np.ndarray,
+    active: np.ndarray,
+    experiment: Experiment,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    settings: Settings,
+    channels: Sequence[int],
+    out: np.ndarray,
+) -> list[str]: ...
 
 class Whitening:
     def __init__(
