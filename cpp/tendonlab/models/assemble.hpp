@@ -14,10 +14,22 @@ constexpr std::size_t first_port(std::size_t i) {
   while (System::ports[first].element != System::ports[i].element) ++first;
   return first;
 }
-/// Gives every port of an element the laws of its first.
+template <class Law, class = void>
+inline constexpr bool asks_if_mirrored = false;
+template <class Law>
+inline constexpr bool asks_if_mirrored<Law, std::void_t<decltype(&Law::mirrored)>> = true;
+
+/// Gives every port of an element the laws of its first; they learn whether their port is mirrored.
 template <class System, std::size_t... i>
 void share_slots(System& system, std::index_sequence<i...>) {
   ((std::get<i>(system.slot) = std::get<first_port<System>(i)>(system.slot)), ...);
+  const auto orient = [](auto& law, [[maybe_unused]] const Port& port) {
+    if constexpr (asks_if_mirrored<std::decay_t<decltype(law)>>) law.mirrored = port.is_mirrored;
+  };
+  const auto place = [&](auto& laws, const Port& port) {
+    std::apply([&](auto&... law) { (orient(law, port), ...); }, laws);
+  };
+  (place(std::get<i>(system.slot).laws, System::ports[i]), ...);
 }
 
 /// Names of the places where laws sit, in the order of the walk.

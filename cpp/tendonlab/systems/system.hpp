@@ -54,6 +54,7 @@ struct Port {
   int direction = -1, side = -1;       ///< modes: direction of sliding, flank of a gap
   int direction_while_driven = -1;     ///< mode of the direction in experiments that give the system's input `driver`
   bool driven = false;                 ///< inputs prescribe its velocity: it never sticks
+  bool is_mirrored = false;            ///< slides backwards where the port that its laws are stated for slides forwards
 
   /// A name of its own, where several ports share an element.
   constexpr Port named(std::string_view own) const {
@@ -87,6 +88,11 @@ struct Port {
   constexpr Port while_driven(int mode) const {
     Port p = *this;
     p.direction_while_driven = mode;
+    return p;
+  }
+  constexpr Port mirrored() const {
+    Port p = *this;
+    p.is_mirrored = true;
     return p;
   }
   /// It has a gap, whose flank is this mode.
