@@ -87,6 +87,7 @@ class EffectInfo:
     name: Final[str]
     element: Final[str]
     effect: Final[str]
+    group: Final[str]
     noun: Final[str]
     phrase: Final[str]
     equation: Final[str]
@@ -96,6 +97,7 @@ class EffectInfo:
     needs: Final[tuple[str, ...]]
     roles: Final[int]
     structural: Final[bool]
+    law: Final[type[Law]]
 
 class SystemInfo:
     def __init__(self, kind: str) -> None: ...

@@ -1,13 +1,9 @@
 // Every law of the library as a Python class, made from its facts and its roles: a new law needs no line here.
 #include <functional>
 
-#include "tendonlab/actuation/all.hpp"
 #include "tendonlab/bindings/columns.hpp"
 #include "tendonlab/bindings/law_box.hpp"
-#include "tendonlab/friction/all.hpp"
-#include "tendonlab/loading/all.hpp"
-#include "tendonlab/sensing/all.hpp"
-#include "tendonlab/transmission/all.hpp"
+#include "tendonlab/bindings/words.hpp"
 
 namespace tendonlab::bindings {
 namespace {
@@ -18,16 +14,6 @@ struct Law {
   Numbers values;
   std::unique_ptr<const LawBox> box = facts->make(values);
 };
-
-std::string pascal_case(std::string_view name) {
-  std::string out;
-  bool starts = true;
-  for (const char c : name) {
-    if (c != '_') out += starts && 'a' <= c && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    starts = c == '_';
-  }
-  return out;
-}
 
 // Construction, and what follows from the numbers of a law
 
@@ -316,22 +302,14 @@ void bind_laws(py::module_& module) {
   options.disable_function_signatures();  // those of pybind11 say nothing about keywords
   const py::object base = bind_base(module);
   py::list registered;
-  const auto add = [&](const char* group, const char* doc, const std::vector<LawFacts (*)()>& laws) {
+  for_each_group([&](const char* group, const char* doc, auto list) {
     py::module_ inside = module.def_submodule(group, doc);
-    for (const auto make_facts : laws) {
+    for (const auto make_facts : facts_of_all<decltype(list)>()) {
       const auto& law = *new LawFacts(make_facts());
       registered.append(py::make_tuple(group, law.name));
       inside.attr(pascal_case(law.name).c_str()) = class_of(law, base, inside);
     }
-  };
-  add("friction", "Friction laws.", facts_of_all<friction::Every>());
-  add("transmission", "Laws of cables and gears.", facts_of_all<transmission::Every>());
-  add("sheath", "Laws of pretensioned tendons in sheaths.",
-      facts_of_all<Joined<transmission::Sheath, transmission::SheathEffort, transmission::Tendons>::type>());
-  add("ends", "Laws of the end sections of cables.", facts_of_all<transmission::Ends>());
-  add("loading", "Laws of the external load of the joint.", facts_of_all<loading::Every>());
-  add("actuation", "Laws of actuators.", facts_of_all<actuation::Every>());
-  add("sensing", "Laws of sensors.", facts_of_all<sensing::All>());
+  });
   options.enable_function_signatures();
   module.def(
       "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");

@@ -82,6 +82,7 @@ void bind_effects(py::module_& module) {
       module, "EffectInfo", "A law in a place, \"joint:stribeck\".",
       {field("name", &EffectInfo::name, "<element>:<effect>."), field("element", &EffectInfo::element, "Place."),
        field("effect", &EffectInfo::effect, "Name of the law."),
+       field("group", &EffectInfo::group, "Group of the law, \"friction\"."),
        field("noun", &EffectInfo::noun, "What reports call the law, \"Stribeck friction\"."),
        field("phrase", &EffectInfo::phrase, "What reports call the effect, \"Stribeck friction at the joint\"."),
        field("equation", &EffectInfo::equation, "Equation of the law."),
@@ -90,7 +91,14 @@ void bind_effects(py::module_& module) {
        field("parameters", &EffectInfo::parameters, "Public names of its parameters."),
        field("needs", &EffectInfo::needs, "Effects whose parameters it shares."),
        field("roles", &EffectInfo::roles, "How it combines with other laws: bits of core/law.hpp."),
-       field("structural", &EffectInfo::structural, "Part of the system, always on.")});
+       field("structural", &EffectInfo::structural, "Part of the system, always on.")})
+      .def_property_readonly(
+          "law",
+          [](const EffectInfo& of) -> py::object {
+            const py::module_ core = py::module_::import("tendonlab._core");
+            return core.attr(of.group.c_str()).attr(pascal_case(of.effect).c_str());
+          },
+          "Class of the law.");
 }
 
 /// The rows of a system as Python objects, made once.

@@ -42,6 +42,7 @@ void Describe::add_law(const LawFacts& law, const std::vector<Row>& parameters) 
   EffectInfo effect{name,
                     element,
                     std::string(law.name),
+                    std::string(law.group),
                     std::string(law.noun),
                     std::string(law.noun) + " " + place_words(),
                     std::string(law.equation),
