@@ -48,9 +48,11 @@ def test_its_parameters_can_be_read_and_kept(law: Any) -> None:
 
 
 def test_a_value_outside_its_bounds_is_refused(law: Any) -> None:
+    """The message states the unit, but none for a ratio."""
     for p in law.law.parameters:
+        unit = "$" if p.dimension in ("ratio", "effort_per_load") else " .+"
         for wrong in (np.nan, np.inf, p.lower - 1.0):
-            with pytest.raises(ParameterError, match=rf"{p.name} = .*: expected a value in \[.*\]"):
+            with pytest.raises(ParameterError, match=rf"{p.name} = .*: expected a value in \[.*\]{unit}"):
                 law.make(**{p.name: wrong})
 
 
