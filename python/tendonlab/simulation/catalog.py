@@ -26,6 +26,11 @@ class SystemInfo(_core.SystemInfo):
         self._parameters = {row.name: row for row in self.parameters}
         self._effects = {row.name: row for row in self.effects}
         self._elements = {row.name: row for row in self.elements}
+        place = {name: k for k, name in enumerate(self._parameters)}
+        self.amplitudes: dict[str, list[int] | None] = {  # places of each effect's amplitudes; None: always acts
+            e.name: None if e.structural else [place[n] for n in e.parameters if self._parameters[n].amplitude]
+            for e in self.effects
+        }
 
     def parameter(self, name: str) -> ParameterInfo:
         """The row of that name; ParameterError, with the nearest name, where there is none."""

@@ -8,6 +8,8 @@ from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tendonlab import _core
 from tendonlab.arguments import choice, interval_text, within
 from tendonlab.errors import ParameterError, expected_one_of
@@ -20,8 +22,6 @@ if TYPE_CHECKING:
 
     from tendonlab.simulation.records import Experiment
     from tendonlab.simulation.trajectory import Trajectory
-
-MAX_ATTEMPTS, ATTEMPTS_PER_SAMPLE = 1_000_000, 1_000  # of the stepper: beyond them a parameter is far too stiff
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,19 @@ class System:
 
     def active(self, *, keep_zero: bool = False) -> list[bool]:
         """One flag per effect of the core. An effect whose amplitude is exactly 0 is off, unless `keep_zero`."""
-        acts = {name for name in self.effects if keep_zero or not self._vanishes(name)}
-        return [e.structural or e.name in acts for e in self.info.effects]
+        if keep_zero:
+            return [e.structural or e.name in self.effects for e in self.info.effects]
+        return [bool(acts) for acts in self.active_at(np.array(self._values))]
+
+    def active_at(self, values: np.ndarray) -> np.ndarray:
+        """One flag per effect, shape (..., effects), for values as `values` gives them, shape (..., parameters)."""
+        active = np.zeros((*values.shape[:-1], len(self.info.amplitudes)), dtype=bool)
+        for e, (name, amplitudes) in enumerate(self.info.amplitudes.items()):
+            if amplitudes is None:
+                active[..., e] = True
+            elif name in self.effects:
+                active[..., e] = (values[..., amplitudes] != 0.0).any(axis=-1)
+        return active
 
     def simulate(
         self,
@@ -129,13 +140,7 @@ class System:
         record = as_experiment(experiment)
         system = self.under(record)
         ready = prepare(record, system, choose_loop(record, self.controller, replay))
-        settings = _core.Settings(
-            tolerance=within("tolerance", tolerance, 1e-14, 0.1),
-            position_scale=ready.position_scale,
-            velocity_scale=ready.velocity_scale,
-            max_attempts=MAX_ATTEMPTS + ATTEMPTS_PER_SAMPLE * len(record.data),
-            ports=ports,
-        )
+        settings = ready.settings(tolerance, ports=ports)
         run = _core.simulate(self.kind, system.values(), system.active(), ready.core, [], settings)
         return trajectory_of(run, self.info, axis=self.axis, time=record.time)
 
@@ -187,12 +192,6 @@ class System:
         on = {e.name for e in info.effects if e.structural} | set(self.effects)
         held = {name for e in info.effects if e.name in on for name in e.parameters}
         return [p.name for p in info.parameters if p.effect is None or p.name in held]
-
-    def _vanishes(self, effect: str) -> bool:
-        rows = [self.info.parameter(name) for name in self.info.effect(effect).parameters]
-        return all(
-            self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0) == 0.0 for p in rows if p.amplitude
-        )
 
 
 def require_system(given: object) -> System:
