@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tendonlab.errors import ParameterError
 from tendonlab.report.words import STAGES, VERDICTS
 from tendonlab.simulation.equality import EqualByFields
+from tendonlab.version import version
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,16 +27,6 @@ Floats = NDArray[np.float64]
 
 _DRAWN: Mapping[str, Any] = {"write": None}  # metadata of a field that report.json leaves out
 _BY_ROW: Mapping[str, Any] = {"write": lambda frame: frame.to_dict(orient="index")}
-
-
-def version() -> str:
-    """The version of tendonlab that runs, "0.0.0" where it is used without being installed."""
-    from importlib import metadata
-
-    try:
-        return metadata.version("tendonlab")
-    except metadata.PackageNotFoundError:
-        return "0.0.0"
 
 
 def _empty_table() -> pd.DataFrame:
