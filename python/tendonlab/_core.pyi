@@ -87,7 +87,6 @@ class EffectInfo:
     name: Final[str]
     element: Final[str]
     effect: Final[str]
-    group: Final[str]
     noun: Final[str]
     phrase: Final[str]
     equation: Final[str]
@@ -97,7 +96,6 @@ class EffectInfo:
     needs: Final[tuple[str, ...]]
     roles: Final[int]
     structural: Final[bool]
-    law: Final[type[Law]]
 
 class SystemInfo:
     def __init__(self, kind: str) -> None: ...
@@ -252,17 +250,14 @@ def simulate(
     seeds: Sequence[tuple[str, int]],
     settings: Settings,
 ) -> dict[str, Any]: ...
-def simulate_many(
+def balance(
     kind: str,
-    values: np.ndarray,
-    active: np.ndarray,
+    values: Sequence[float],
+    active: Sequence[bool],
     experiment: Experiment,
-    position: np.ndarray,
-    velocity: np.ndarray,
-    settings: Settings,
-    channels: Sequence[int],
-    out: np.ndarray,
-) -> list[str]: ...
+    position: Floats,
+    velocity: Floats,
+) -> dict[str, Floats]: ...
 
 class Whitening:
     def __init__(

@@ -75,6 +75,27 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
     out["ports"] = to_array(std::move(run.port), {static_cast<py::ssize_t>(of.info().ports.size()), 4, samples});
   return out;
 }
+
+py::dict balance(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
+                 const Experiment& experiment, const Array& position, const Array& velocity) {
+  const Model& of = model(kind);
+  const Configuration configuration = make_configuration(of, values, active);
+  const integrate::MeasuredMotion motion{{position.data(), position.data() + position.size()},
+                                         {velocity.data(), velocity.data() + velocity.size()}};
+  integrate::Balance found;
+  {
+    py::gil_scoped_release release;
+    found = of.balance(configuration, experiment, motion);
+  }
+  const auto samples = static_cast<py::ssize_t>(experiment.time.size());
+  const auto rows = [&](std::vector<double>& of_all) {
+    const auto count = static_cast<py::ssize_t>(of_all.size()) / samples;
+    return to_array(std::move(of_all), {count, samples});
+  };
+  py::dict out;
+  out["effort"] = rows(found.effort), out["inertia"] = rows(found.inertia), out["outputs"] = rows(found.output);
+  return out;
+}
 /// What `simulate` is asked.
 void bind_experiments(py::module_& module) {
   py::class_<Signal>(module, "Signal",
@@ -118,9 +139,9 @@ void bind_experiments(py::module_& module) {
       .def_readonly("velocity", &Experiment::velocity);
   py::class_<integrate::Settings>(module, "Settings", "Tolerance and scales of the integration.")
       .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts, bool ports) {
-             require_within("tolerance", tolerance, 1e-14, 0.1);
-             require_within("position_scale", position_scale, 1e-300, 1e300);
-             require_within("velocity_scale", velocity_scale, 1e-300, 1e300);
+             require_within("tolerance", tolerance, 1e-14, 0.1, "1");
+             require_within("position_scale", position_scale, 1e-300, 1e300, "");
+             require_within("velocity_scale", velocity_scale, 1e-300, 1e300, "");
              return integrate::Settings{tolerance, position_scale, velocity_scale, max_attempts, ports};
            }),
            py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,
@@ -142,5 +163,9 @@ void bind_systems(py::module_& module) {
   module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
              py::arg("seeds"), py::arg("settings"),
              "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, 4, samples).");
+  module.def("balance", &balance, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
+             py::arg("position"), py::arg("velocity"),
+             "The equation of motion along a measured motion (dof, samples): what acts on each degree of freedom, its "
+             "inertia (dof, samples), and the outputs (channels, samples).");
 }
 }  // namespace tendonlab::bindings

@@ -44,6 +44,14 @@ class Instant {
   std::optional<std::array<T, slots<System>>> borne;
 };
 
+/// The outputs at an instant, before their sensors.
+template <class System, class T, class Inputs>
+auto observe(const System& system, Instant<System, T, Inputs>& instant) {
+  const auto acts = [&](auto i) { return instant.template force<i>(); };
+  const auto port = [&](auto i) -> const Sliding<T>& { return instant.coupled().port[i]; };
+  return system.observe(instant.y.at, acts, port);
+}
+
 template <class System, class T>
 class Recorder {
   static constexpr int n = System::dof, channels = static_cast<int>(System::outputs.size()), ports = slots<System>;
@@ -69,7 +77,7 @@ class Recorder {
         Y y = s.at((time[next[0]] - over.start) * per_length);
         y.at.time = T(time[next[0]]);
         Instant<System, T, Inputs> instant(port_modes, y, in);
-        const auto seen = observe(instant);
+        const auto seen = observe(system, instant);
         for (std::size_t c = 0; c < channels; ++c)
           out.write(c, next[0], system.sensor[c].apply(seen[c]), column, width);
       }
@@ -93,14 +101,8 @@ class Recorder {
         Y y = s.at(begun ? share : T(0.0));
         y.at.time = begun ? then : T(over.start);
         Instant<System, T, Inputs> instant(port_modes, y, in);
-        out.write(c, next[c], system.sensor[c].apply(observe(instant)[c]), column, width);
+        out.write(c, next[c], system.sensor[c].apply(observe(system, instant)[c]), column, width);
       }
-  }
-  template <class Inputs>
-  auto observe(Instant<System, T, Inputs>& instant) const {
-    const auto acts = [&](auto i) { return instant.template force<i>(); };
-    const auto port = [&](auto i) -> const Sliding<T>& { return instant.coupled().port[i]; };
-    return system.observe(instant.y.at, acts, port);
   }
   /// Velocity, position, load and force of each port.
   template <class Values, class Inputs>

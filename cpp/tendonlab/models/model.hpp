@@ -6,6 +6,7 @@
 
 #include "tendonlab/core/parameter.hpp"
 #include "tendonlab/integrate/experiment.hpp"
+#include "tendonlab/integrate/motion.hpp"
 #include "tendonlab/systems/signals.hpp"
 
 namespace tendonlab {
@@ -19,7 +20,6 @@ struct ParameterInfo {
 };
 struct EffectInfo {
   std::string name, element, effect;
-  std::string group;         ///< of its law (models/groups.hpp)
   std::string noun, phrase;  ///< "Stribeck friction", "Stribeck friction at the joint"
   std::string equation, source, summary;
   std::vector<std::string> parameters;
@@ -72,6 +72,10 @@ class Model {
   virtual integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
                                          const std::vector<integrate::Seed>& seeds,
                                          const integrate::Settings& settings) const = 0;
+  /// The equation of motion along a measured motion with the inputs of `experiment`, at its samples. Throws
+  /// ParameterError for a system without one.
+  virtual integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
+                                     const integrate::MeasuredMotion& motion) const = 0;
 };
 /// All systems of the library, in the order in which they are listed.
 const std::vector<std::unique_ptr<Model>>& models();

@@ -1,6 +1,7 @@
 #pragma once
 // The one place where a system template becomes a Model: its description and its simulations.
 #include "tendonlab/core/error.hpp"
+#include "tendonlab/integrate/balance.hpp"
 #include "tendonlab/models/run.hpp"
 
 namespace tendonlab {
@@ -40,6 +41,19 @@ class ModelOf final : public Model {
       systems::run<Of, Gradient>({{description, with, seeds, first, count}, experiment, settings, out});
     }
     return out;
+  }
+  integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
+                             const integrate::MeasuredMotion& motion) const override {
+    require_matching(experiment, {});
+    if constexpr (Of<double>::sampled) {
+      throw ParameterError(sentence(Of<double>::name, ": expected a system with an equation of motion"));
+    } else {
+      const std::size_t cells = experiment.position.size() * experiment.time.size();
+      if (motion.position.size() != cells || motion.velocity.size() != cells)
+        throw ParameterError(sentence("motion: expected ", cells, " positions and as many velocities"));
+      const auto system = systems::assemble<Of<double>, double>({description, with, {}, 0, 0});
+      return integrate::Balancing<Of<double>>(system, experiment).along(motion);
+    }
   }
 
  private:
@@ -82,6 +96,10 @@ class ModelOrGrown final : public Model {
                                  const integrate::Settings& settings) const override {
     return with.active[switching] ? grown->simulate(with, experiment, seeds, settings)
                                   : usual.simulate(with, experiment, seeds, settings);
+  }
+  integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
+                             const integrate::MeasuredMotion& motion) const override {
+    return usual.balance(with, experiment, motion);
   }
 
  private:
