@@ -86,7 +86,7 @@ def _expected_unit(
 
 
 def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
-    """The unit of the command: of an effort, or the written one where a gain of the command converts it."""
+    """The unit of the command: of an effort, or A, V or 1 where a gain of the command converts it."""
     effort = unit("effort", axis)
     command = info.command
     if command is None or command.name not in tables.values:
@@ -96,9 +96,10 @@ def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
     try:
         if same_dimension(written, effort):
             return effort
-        if any(same_dimension(written, allowed) for allowed in COMMAND_UNITS):
+        converted = next((allowed for allowed in COMMAND_UNITS if same_dimension(written, allowed)), None)
+        if converted is not None:
             if info.with_role("command_gain") is not None:
-                return written
+                return converted
             raise DatasetError(
                 f"unit {written!r}: no parameter of {info.kind} converts it; expected one like {effort!r}"
             )
