@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tendonlab._core import actuation, ends, friction, loading, sensing, sheath, transmission
+    from tendonlab.checking.check import check
+    from tendonlab.checking.finding import Check
     from tendonlab.data.dataset import Dataset
     from tendonlab.data.folder import load
     from tendonlab.diagnosis.diagnose import diagnose
@@ -15,14 +17,15 @@ if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
     from tendonlab.simulation.catalog import kinds, system_info
     from tendonlab.simulation.records import Experiment
+    from tendonlab.simulation.sweep import sweep
     from tendonlab.simulation.system import System
     from tendonlab.simulation.trajectory import Trajectory
-    from tendonlab.sweeping.sweep import sweep
 
     __version__: str
 
 __all__ = [
     "BranchLosses",
+    "Check",
     "Dataset",
     "DatasetError",
     "Diagnosis",
@@ -35,6 +38,7 @@ __all__ = [
     "TendonTransmission",
     "Trajectory",
     "actuation",
+    "check",
     "diagnose",
     "ends",
     "friction",
@@ -52,6 +56,8 @@ __all__ = [
 # Where each public name is defined: a module is loaded when its first name is used, so that the import takes no time.
 _HOMES = {
     "tendonlab._core": "actuation ends friction loading sensing sheath transmission",
+    "tendonlab.checking.check": "check",
+    "tendonlab.checking.finding": "Check",
     "tendonlab.data.dataset": "Dataset",
     "tendonlab.data.folder": "load",
     "tendonlab.diagnosis.diagnose": "diagnose",
@@ -62,13 +68,14 @@ _HOMES = {
     "tendonlab.report.diagnosis": "Diagnosis",
     "tendonlab.simulation.catalog": "kinds system_info",
     "tendonlab.simulation.records": "Experiment",
+    "tendonlab.simulation.sweep": "sweep",
     "tendonlab.simulation.system": "System",
     "tendonlab.simulation.trajectory": "Trajectory",
-    "tendonlab.sweeping.sweep": "sweep",
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 _PACKAGES = (
     "blind",
+    "checking",
     "cli",
     "data",
     "diagnosis",
@@ -78,14 +85,15 @@ _PACKAGES = (
     "procedures",
     "report",
     "simulation",
-    "sweeping",
 )
 
 if not TYPE_CHECKING:  # otherwise every misspelt name would pass the type checker
 
     def __getattr__(name: str) -> object:
         if name == "__version__":
-            value = _import_module("tendonlab.version").version()
+            from importlib.metadata import version
+
+            value = version("tendonlab")
         elif name in _HOME_OF:
             value = getattr(_import_module(_HOME_OF[name]), name)
         elif name in _PACKAGES:

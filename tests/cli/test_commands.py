@@ -239,3 +239,10 @@ def test_a_terminal_without_the_letters_still_gets_the_answer(tmp_path: Path) ->
 def test_a_seed_that_is_none_is_refused_before_the_work(capsys: Printed, tiny: Path) -> None:
     assert main(["diagnose", str(tiny), "--seed", "-1"]) == 2
     assert "seed = -1: expected a whole number of at least 0" in complaint(capsys)
+
+
+def test_check_prints_what_it_found_and_writes_it(tmp_path: Path, capsys: Printed) -> None:
+    file = tmp_path / "check.json"
+    assert main(["check", "data/two_inertia", "--out", str(file)]) == 0
+    assert capsys.readouterr().out.startswith("two_inertia: Nothing in the logs forbids a diagnosis.")
+    assert json.loads(file.read_text())["blocks"] is False

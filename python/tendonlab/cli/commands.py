@@ -61,7 +61,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"tendonlab {__version__}")
     commands = _commands(parser, dest="command", metavar="COMMAND")
-    for add in (_add_demo, _add_diagnose, _add_identify, _add_simulate, _add_effects, _add_systems, _add_datasets):
+    for add in (_add_demo, _add_check, _add_diagnose, _add_identify, _add_simulate):
+        add(commands)
+    for add in (_add_effects, _add_systems, _add_datasets):
         add(commands)
     add_blind(commands)
     return parser
@@ -88,6 +90,12 @@ def _add_demo(commands: Any) -> None:
     parser = _command(commands, "demo", _demo, "diagnose the bundled rig and write its report")
     parser.add_argument("--out", type=Path, default=Path("tendonlab-demo"), metavar="DIR", help="default: %(default)s")
     _add_progress(parser)
+
+
+def _add_check(commands: Any) -> None:
+    parser = _command(commands, "check", _check, "look for wrong signs, units, clocks and samples in the logs")
+    parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
+    parser.add_argument("--out", type=Path, metavar="FILE.json", help="write the findings here")
 
 
 def _add_diagnose(commands: Any) -> None:
@@ -160,6 +168,21 @@ def _demo(given: Arguments) -> int:
     return 0
 
 
+def _check(given: Arguments) -> int:
+    from tendonlab.checking.check import check
+    from tendonlab.cli.text import check_text
+    from tendonlab.data import load
+
+    rig = load(_folder(given.dataset))
+    _require_writable(given.out)
+    found = check(rig)
+    print(check_text(found))
+    if given.out is not None:
+        given.out.write_text(json.dumps(found.to_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        print(f"\nWritten: {given.out}")
+    return 0
+
+
 def _diagnose(given: Arguments) -> int:
     from tendonlab.data import load
     from tendonlab.diagnosis.diagnose import diagnose
@@ -201,7 +224,7 @@ def _identify(given: Arguments) -> int:
 def _simulate(given: Arguments) -> int:
     from tendonlab.cli.text import errors_text
     from tendonlab.data import load
-    from tendonlab.sweeping.points import refuse_conditions
+    from tendonlab.simulation.sweep import refuse_conditions
 
     rig = load(_folder(given.dataset))
     _require_writable(given.out)

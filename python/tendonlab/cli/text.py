@@ -13,6 +13,7 @@ from tendonlab.report.words import listing
 from tendonlab.simulation.catalog import parameter_unit, unit
 
 if TYPE_CHECKING:
+    from tendonlab.checking.finding import Check, Finding
     from tendonlab.data import Experiment
     from tendonlab.identification.result import Identification
     from tendonlab.simulation.catalog import EffectInfo, SystemInfo
@@ -61,6 +62,27 @@ def bullets(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
         for mark, item in zip(marks, items, strict=True)
     ]
     return "\n".join([title, *lines] if title else lines)
+
+
+def check_text(found: Check) -> str:
+    """What the check of the logs found: first what must be corrected, then what a diagnosis copes with."""
+    blocking = [_finding(f) for f in found.findings if f.blocks]
+    others = [_finding(f) for f in found.findings if not f.blocks]
+    verdict = (
+        "The logs must be corrected before a diagnosis." if blocking else "Nothing in the logs forbids a diagnosis."
+    )
+    parts = [
+        wrapped(f"{found.dataset}: {verdict}"),
+        bullets("Correct first", blocking),
+        bullets("Noted", others),
+        bullets("Not checked", found.notes),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _finding(finding: Finding) -> str:
+    place = f" ({finding.place})" if finding.place else ""
+    return f"{finding.problem}{place}: {finding.detail}"
 
 
 def identification_text(fit: Identification) -> str:

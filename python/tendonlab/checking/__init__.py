@@ -1,0 +1,1 @@
+"""Whether logs can be trusted: signs, scales, clocks, samples."""

@@ -1,0 +1,54 @@
+"""The check of a dataset's logs: before anything is believed about effects."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tendonlab.checking.clocks import clock_findings
+from tendonlab.checking.copies import copy_findings
+from tendonlab.checking.equation import Equation
+from tendonlab.checking.factors import factor_findings
+from tendonlab.checking.finding import PROBLEMS, Check, Finding
+from tendonlab.checking.lags import lags
+from tendonlab.checking.logs import Logs, read_logs
+from tendonlab.checking.samples import sample_findings
+from tendonlab.checking.scales import EXPLAINED, wrong_factors
+from tendonlab.data import Dataset, require_dataset
+from tendonlab.simulation.system import System, require_system
+
+UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
+UNSAMPLED = "Signs, scales and lags could not be checked: {kind} has no equation of motion."
+UNEXPLAINED = (
+    "Lags could not be checked: the equation of motion leaves {share:.0f} % of what it predicts, with any one factor."
+)
+
+
+def check(dataset: Dataset, *, system: System | None = None) -> Check:
+    """Say what looks wrong with the logs of `dataset` themselves: signs, scales and units, lags, stamps, outliers,
+    limits, copies. `system`: the simulator (the dataset's own unless given), whose equation of motion must hold.
+
+    Nothing is simulated: it takes seconds. How it works: docs/method.md."""
+    require_dataset(dataset)
+    system = dataset.system() if system is None else require_system(system)
+    found, notes = [*copy_findings(dataset), *sample_findings(dataset)], []
+    if system.info.dof == 0:
+        notes.append(UNSAMPLED.format(kind=system.kind))
+    elif (logs := read_logs(dataset, system.info)) is None:
+        notes.append(UNMOVED)
+    else:
+        more, notes = _by_the_equation(Equation(dataset, system), logs)
+        found += more
+    found.sort(key=lambda f: (not f.blocks, PROBLEMS.index(f.problem)))
+    return Check(dataset=dataset.name, findings=tuple(found), notes=tuple(notes))
+
+
+def _by_the_equation(equation: Equation, logs: Logs) -> tuple[list[Finding], list[str]]:
+    dataset = equation.dataset
+    factors = wrong_factors(equation, logs)
+    if factors:  # lags are judged once these are corrected
+        return factor_findings(factors, dataset), []
+    late = lags(equation, logs)
+    if late.level > EXPLAINED:
+        return [], [UNEXPLAINED.format(share=100 * late.level)]
+    step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))
+    return clock_findings(late, [e.name for e in dataset.experiments], dataset.inputs, step), []

@@ -1,0 +1,99 @@
+"""From lags to findings: experiments that lag others, and a lag that all share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from tendonlab.checking.finding import Finding
+from tendonlab.checking.lags import Lags
+
+SURE = 5.0  # sd, of the lag and of its scatter among experiments, that make a lag
+LEAST = 1.5  # samples by which an experiment must lag the others
+LEAST_SHARED = 0.25  # of a sample, of a lag that all share
+RESOLVED = 0.25  # of a sample: no lag is known better
+MATTERS = 3.0  # levels of the residual that the lag of one experiment must be worth
+MIDDLE = 0.6745  # sd that half of all normal errors exceed
+ROUNDS = 3  # of common lag and scatter
+SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
+UNKNOWN = 10.0  # s: a lag of which nothing is known
+
+
+def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step: float) -> list[Finding]:
+    """What the lags of the outputs in the experiments `names` say; `step`: from sample to sample, s."""
+    known = np.hypot(lags.sd, RESOLVED * step)
+    levels = np.fmin(1.0 / np.fmax(lags.weight, 1e-300), UNKNOWN)
+    shared, total = (np.array(x) for x in zip(*map(_common, lags.seconds, known, levels), strict=True))
+    away = lags.seconds - shared[:, None]
+    late = (np.abs(away) > SURE * total) & (np.abs(away) > LEAST * step) & (np.abs(away) * lags.weight > MATTERS)
+    found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
+    return [*found, *_all_late(lags, inputs, shared, total, step)]
+
+
+def _one_late(
+    lags: Lags, inputs: Sequence[str], away: np.ndarray, late: np.ndarray, experiment: str
+) -> Iterator[Finding]:
+    """An experiment whose outputs lag its inputs otherwise than in the others. Where not all outputs agree, the one
+    that differs is guilty."""
+    if not late.any():
+        return
+    alone = len(late) > 1 and not late.all()
+    for c in np.flatnonzero(late) if alone else [int(np.argmax(np.abs(away)))]:
+        seconds = float(away[c])
+        what = lags.channels[c] if alone else " and ".join(lags.channels)
+        verb = "lags" if seconds > 0 else "leads"
+        yield Finding(
+            problem="clock",
+            signal=lags.channels[c] if alone else None,
+            experiment=experiment,
+            alternatives=() if alone else (*inputs, *lags.channels),
+            seconds=seconds,
+            blocks=True,
+            detail=f"in {experiment}, {what} {verb} the inputs by {_time(seconds)} more than in the other experiments; "
+            "align its channels to one clock, or leave the experiment out",
+        )
+
+
+def _all_late(
+    lags: Lags, inputs: Sequence[str], shared: np.ndarray, total: np.ndarray, step: float
+) -> Iterator[Finding]:
+    """Lags that all experiments share: the effect `delay`, which a diagnosis may establish."""
+    sd = 1.0 / np.sqrt(np.sum(1.0 / total**2, axis=1))
+    late = (np.abs(shared) > SURE * sd) & (np.abs(shared) > LEAST_SHARED * step)
+    together = bool(late.all()) and float(np.ptp(shared)) < max(step, SURE * float(np.max(sd)))
+    for c in [int(np.argmin(sd))] if together else np.flatnonzero(late):
+        seconds = float(shared[c])
+        single = len(lags.channels) > 1 and not together
+        what = " and ".join(lags.channels) if together else lags.channels[c]
+        verb = ("lags" if seconds > 0 else "leads") if not together or len(lags.channels) == 1 else (
+            "lag" if seconds > 0 else "lead")  # fmt: skip
+        yield Finding(
+            problem="clock",
+            signal=lags.channels[c] if single else None,
+            alternatives=() if single else (*inputs, *lags.channels),
+            seconds=seconds,
+            detail=f"{what} {verb} the inputs by {_time(seconds)} in all experiments; a diagnosis treats this lag as "
+            "the effect delay",
+        )
+
+
+def _common(seconds: np.ndarray, sd: np.ndarray, level: np.ndarray) -> tuple[float, np.ndarray]:
+    """The lag that most experiments share, and the sd of each about it: its own `sd`, and a share of its `level`, the
+    lag that is worth what the equations leave, since what the simulator lacks resembles a lag. The share is such that
+    the middle experiment is as far away as normal errors are: a few that differ much do not change it."""
+    common, total = float(np.median(seconds)), sd
+    shares = np.concatenate([[0.0], np.geomspace(*SHARES, 60)])
+    for _ in range(ROUNDS):
+        away = np.abs(seconds - common)
+        middle = [np.median(away / np.hypot(sd, share * level)) for share in shares]
+        total = np.hypot(sd, shares[int(np.argmax([*(np.array(middle[:-1]) <= MIDDLE), True]))] * level)
+        order = np.argsort(seconds)
+        weight = np.cumsum(1.0 / total[order] ** 2)
+        common = float(seconds[order][np.searchsorted(weight, 0.5 * weight[-1])])
+    return common, total
+
+
+def _time(seconds: float) -> str:
+    size = abs(seconds)
+    return f"{1e3 * size:.3g} ms" if size < 1.0 else f"{size:.3g} s"

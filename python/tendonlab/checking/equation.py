@@ -1,0 +1,190 @@
+"""The simulator's equation of motion along the logs: what is left where it should balance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.checking.logs import Logs
+from tendonlab.data import Dataset, Experiment
+from tendonlab.simulation.catalog import MEMORY
+from tendonlab.simulation.system import System
+
+
+@dataclass(frozen=True)
+class Equation:
+    """The equations of a system. The first: the balance of efforts of all parts that move together. Where every axis
+    was measured, one for each further axis: its own balance. One for each other output: what it should read."""
+
+    dataset: Dataset
+    system: System
+
+    @cached_property
+    def axes(self) -> dict[int, str]:
+        """The measured degrees of freedom and their signals."""
+        known = self.dataset.signals
+        return {s.axis: s.name for s in self.system.info.outputs if s.axis is not None and s.name in known}
+
+    @cached_property
+    def separate(self) -> tuple[int, ...]:
+        """Degrees of freedom beyond the first measured one whose own balance is an equation."""
+        return tuple(self.axes)[1:] if len(self.axes) == self.system.info.dof else ()
+
+    @cached_property
+    def others(self) -> tuple[str, ...]:
+        """Outputs that are no position of an axis, as far as they were measured."""
+        info = self.system.info
+        return tuple(s.name for s in info.outputs if s.axis is None and s.name in self.dataset.signals)
+
+    @cached_property
+    def predicted(self) -> tuple[tuple[str, ...], ...]:
+        """For each equation the signals that it predicts."""
+        inputs = tuple(s.name for s in self.system.info.inputs if s.name in self.dataset.signals)
+        return (inputs, *((self.axes[j],) for j in self.separate), *((name,) for name in self.others))
+
+    @cached_property
+    def moved(self) -> tuple[str, ...]:
+        """The axis signals whose balance the first equations are."""
+        return (next(iter(self.axes.values())), *(self.axes[j] for j in self.separate))
+
+    def along(self, logs: Logs) -> tuple[Stretch, ...]:
+        """The logs cut where conditions change, ready to be evaluated."""
+        return tuple(Stretch.of(self, logs, group) for group in self._groups(logs))
+
+    @cached_property
+    def conditions(self) -> tuple[Conditions, ...]:
+        """The simulator in each experiment."""
+        return tuple(Conditions.of(self, e) for e in self.dataset.experiments)
+
+    def evaluate(
+        self, stretches: Sequence[Stretch], samples: int, *, parameter: int = -1, nudge: float = 0.0
+    ) -> np.ndarray:
+        """Every equation (equations, samples), with a `nudge` to the parameter of that index."""
+        found = np.empty((len(self.predicted), samples))
+        for stretch in stretches:
+            found[:, stretch.own] = stretch.missing(self, parameter, nudge)
+        return found
+
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """Where the system lists the outputs `others`."""
+        names = [s.name for s in self.system.info.outputs]
+        return tuple(names.index(name) for name in self.others)
+
+    def _groups(self, logs: Logs) -> list[list[int]]:
+        """Experiments that one call may go through: of the same conditions, with inputs that count at the instant."""
+        alone = any(s.between != "hold" and s.name in logs.driving for s in self.system.info.inputs)
+        groups: dict[str, list[int]] = {}
+        for i in np.unique(logs.run).tolist():
+            groups.setdefault(str(i) if alone else repr(self.conditions[i].values), []).append(i)
+        return list(groups.values())
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """The numbers of the simulator in an experiment; `fixed`: indices of those that it states; `shape`: how far each
+    degree of freedom moves with the first measured one."""
+
+    values: list[float]
+    active: list[bool]
+    fixed: frozenset[int]
+    shape: np.ndarray
+
+    @classmethod
+    def of(cls, equation: Equation, experiment: Experiment) -> Conditions:
+        """The conditions of `experiment`."""
+        system = equation.system.under(experiment)
+        values, active = system.values(), _without_memory(system)
+        shape = np.array(_core.rigid_motion(system.kind, values, active)[0])
+        names = [p.name for p in system.info.parameters]
+        fixed = frozenset(names.index(name) for name in experiment.conditions if name in names)
+        return cls(values, active, fixed, shape / shape[next(iter(equation.axes))])
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Samples of experiments under the same conditions: `own` marks them; `rest`: the logs of the other outputs."""
+
+    own: np.ndarray
+    core: _core.Experiment
+    under: Conditions
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    rest: np.ndarray
+
+    @classmethod
+    def of(cls, equation: Equation, logs: Logs, group: Sequence[int]) -> Stretch:
+        """The samples of the experiments `group`."""
+        own = np.isin(logs.run, group)
+        under = equation.conditions[group[0]]
+        time = logs.time[own] if len(group) == 1 else logs.step * np.arange(float(own.sum()))
+        rest = np.array([logs.others[name][0, own] for name in equation.others]).reshape(-1, len(time))
+        core = _core_experiment(equation.system, logs, own, time)
+        return cls(own, core, under, *_motion(equation, logs, own, under.shape), rest)
+
+    def without_inputs(self, system: System) -> Stretch:
+        """The same where nothing drives."""
+        info, time = system.info, self.core.time
+        still = [0.0] * info.dof
+        nothing = [_core.Signal(np.array(time[:1]), np.zeros((1, 4)), False) for _ in info.inputs]
+        core = _core.Experiment(
+            kind=info.kind, time=time, inputs=nothing, loop=_core.Loop(), position=still, velocity=still
+        )
+        return replace(self, core=core)
+
+    def shifted(self, axis: int, by: float) -> Stretch:
+        """The same with a degree of freedom elsewhere."""
+        position = self.position.copy()
+        position[axis] += by
+        return replace(self, position=position)
+
+    def missing(self, equation: Equation, parameter: int, nudge: float) -> np.ndarray:
+        """What the efforts lack to balance (equations, samples)."""
+        values = self.under.values
+        if parameter >= 0 and parameter not in self.under.fixed:
+            values = [*values[:parameter], values[parameter] + nudge, *values[parameter + 1 :]]
+        kind = equation.system.kind
+        found = _core.balance(kind, values, self.under.active, self.core, self.position, self.velocity)
+        missing = found["inertia"] * self.acceleration - found["effort"]
+        seen = found["outputs"][list(equation.places)]
+        together = (self.under.shape @ missing)[None]
+        return np.concatenate([together, missing[list(equation.separate)], self.rest - seen])
+
+
+def _motion(
+    equation: Equation, logs: Logs, own: np.ndarray, shape: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Position, velocity and acceleration of every degree of freedom; what was not measured moves as if nothing
+    stretched."""
+    first = logs.moving[equation.moved[0]][:, own]
+    rows = [
+        logs.moving[equation.axes[j]][:, own] if j in equation.axes else share * first for j, share in enumerate(shape)
+    ]
+    position, velocity, acceleration = np.array(rows).transpose(1, 0, 2)
+    stated = equation.system.info.dof
+    return np.ascontiguousarray(position[:stated]), np.ascontiguousarray(velocity[:stated]), acceleration
+
+
+def _core_experiment(system: System, logs: Logs, own: np.ndarray, time: np.ndarray) -> _core.Experiment:
+    """The inputs, by value and rate at each sample."""
+    info = system.info
+    signals = []
+    for s in info.inputs:
+        pieces = np.zeros((len(time), 4))
+        if s.name in logs.driving:
+            pieces[:, :2] = logs.driving[s.name][:, own].T
+        signals.append(_core.Signal(time, pieces, False) if s.name in logs.driving else _core.Signal())
+    still = [0.0] * info.dof
+    return _core.Experiment(
+        kind=info.kind, time=time.tolist(), inputs=signals, loop=_core.Loop(), position=still, velocity=still
+    )
+
+
+def _without_memory(system: System) -> list[bool]:
+    """Flags of the effects. Those with a memory are off: a motion at an instant does not say what they remember."""
+    return [on and not e.roles & MEMORY for on, e in zip(system.active(), system.info.effects, strict=True)]

@@ -1,0 +1,77 @@
+"""From wrong factors to findings, in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from tendonlab.checking.finding import Finding
+from tendonlab.checking.logs import TIME
+from tendonlab.checking.scales import BLOCKING, Factor
+from tendonlab.data import Dataset
+from tendonlab.report.numbers import number
+
+# Ratio, how it and its inverse are written, and what confuses by it.
+KNOWN = (
+    (1e6, "a million", "1/1000000", "a prefix such as micro"),
+    (1000.0, "1000", "1/1000", "a prefix such as milli"),
+    (100.0, "100", "1/100", "a prefix such as centi"),
+    (360.0, "360", "1/360", "turns and degrees"),
+    (180.0 / math.pi, "180/pi", "pi/180", "degrees and radians"),
+    (60.0, "60", "1/60", "minutes and seconds"),
+    (9.81, "9.81", "1/9.81", "kilogram-force and newton"),
+    (2.0 * math.pi, "2 pi", "1/(2 pi)", "turns and radians"),
+    (2.0, "2", "1/2", "a diameter and a radius, or both sides and one"),
+)
+NEAR = 0.12  # relative distance within which a known ratio is named
+
+
+def factor_findings(factors: Sequence[Factor], dataset: Dataset) -> list[Finding]:
+    """A finding for each signal of the best factor; the other ones are its alternatives."""
+    if not factors:
+        return []
+    best = factors[0]
+    kind = "sign" if best.value < 0 else "scale"
+    others = [name for f in factors[1:] if (f.value < 0) == (best.value < 0) for name in f.signals]
+    alternatives = tuple(dict.fromkeys(name for name in others if name not in best.signals))
+    details = _sign_words if kind == "sign" else _scale_words
+    return [
+        Finding(
+            problem=kind,
+            signal=name,
+            alternatives=alternatives,
+            factor=best.value,
+            blocks=True,
+            detail=details(name, best.value, alternatives, dataset),
+        )
+        for name in best.signals
+    ]
+
+
+def _sign_words(name: str, value: float, alternatives: Sequence[str], dataset: Dataset) -> str:
+    text = f"the efforts that the motion needs come out {number(value)} times as stated"
+    size = f". Their size is wrong as well{_hint(-value)}" if abs(math.log(-value)) > math.log(BLOCKING) else ""
+    turn = f"turn the sign of {' or '.join([name, *alternatives])}{' (one of them)' if alternatives else ''}"
+    return f"{text}; {turn}{size}"
+
+
+def _scale_words(name: str, value: float, alternatives: Sequence[str], dataset: Dataset) -> str:
+    also = f". {' or '.join(alternatives)} may be wrong instead" if alternatives else ""
+    seen = f"{number(value)} times as large as the equation of motion allows{_hint(value)}"
+    if name == TIME:
+        return f"the time is {seen}; check the unit of the time column{also}"
+    spec = dataset.signals[name]
+    gain = dataset.system().info.with_role("command_gain")
+    scaled = spec.role == "input" and gain is not None and gain.name in dataset.parameters
+    constant = f"and {gain.name}" if scaled and gain is not None else "and the constants that scale it"
+    return f"{name} is {seen}; check its unit ({spec.unit}) {constant}{also}"
+
+
+def _hint(value: float) -> str:
+    """The confusion that a factor suggests."""
+    for ratio, label, inverse, words in KNOWN:
+        if abs(math.log(value / ratio)) < NEAR:
+            return f" (near {label}: {words}?)"
+        if abs(math.log(value * ratio)) < NEAR:
+            return f" (near {inverse}: {words}?)"
+    return ""

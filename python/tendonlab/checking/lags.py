@@ -1,0 +1,141 @@
+"""Late channels: by how much each output of each experiment lags the inputs, from the equation of motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab.checking.equation import Equation
+from tendonlab.checking.logs import Logs
+from tendonlab.checking.regression import Fit, scale_and_weight
+from tendonlab.checking.scales import ROUGH_SHARE, shares
+from tendonlab.checking.terms import Terms, terms
+
+SAMPLES, SCANNED = 4000, 1000  # that decide, and that the scan looks at
+LONGEST, PART = 0.5, 0.25  # s, and share of the shortest experiment: lags that are looked for
+GROWTH = 1.3  # from one lag that is tried to the next
+OWN = 10.0  # nats by which a lag of its own must suit an experiment better than the common one
+SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
+ROUNDS, CLOSE = 12, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
+NUDGE = 0.1  # of the step of the logs, by which the column of a lag is found
+
+
+@dataclass(frozen=True)
+class Lags:
+    """`seconds` and `sd` (channels, experiments): how far each output is behind the inputs; `channels`: the outputs;
+    `weight` (channels, experiments): by how many times what the equations leave a lag of a second would change them;
+    `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
+
+    channels: tuple[str, ...]
+    seconds: np.ndarray
+    sd: np.ndarray
+    weight: np.ndarray
+    level: float
+
+
+def lags(equation: Equation, logs: Logs) -> Lags:
+    """The lag of every output in every experiment, all of them together with the parameters."""
+    channels = (*equation.axes.values(), *equation.others)
+    late = np.zeros((len(channels), len(equation.dataset.experiments)))
+    late[: len(equation.axes)] = _scanned(equation, logs)
+    kept = _regular(logs, SAMPLES)
+    share = np.full(len(equation.predicted), ROUGH_SHARE)
+    sd = np.full(late.shape, np.inf)
+    for _ in range(ROUNDS):
+        moved = logs
+        for name, by in zip(channels, late, strict=True):
+            moved = moved.earlier(name, by)
+        at = terms(equation, moved.at(kept))
+        fit = at.fit(share)
+        share = shares(fit.residual, logs.run[kept])
+        slopes = _slopes(equation, moved, kept, channels, at)
+        own, belief = _with_friction(equation, moved.at(kept), at, slopes)
+        step, sd = (part[: len(channels)] for part in _steps(at, fit, own, belief, logs.run[kept], share))
+        late = late + np.clip(step, -logs.step, logs.step)
+        if np.all(np.abs(step) < CLOSE * sd):
+            break
+    weight = _weights(slopes / (fit.level * at.size)[:, None], logs.run[kept], late.shape[1])
+    return Lags(channels, late, sd, weight, float(fit.level[0]))
+
+
+def _regular(logs: Logs, most: int) -> np.ndarray:
+    kept = np.flatnonzero(logs.clear)
+    return kept[:: max(1, -(-len(kept) // most))]
+
+
+def _slopes(equation: Equation, moved: Logs, kept: np.ndarray, channels: tuple[str, ...], at: Terms) -> np.ndarray:
+    """What the equations change per second by which each output is taken earlier (channels, equations, samples).
+    Nothing where that turns the direction of dry friction: a jump has no slope."""
+    nudge = NUDGE * moved.step
+    slopes = np.zeros((len(channels), *at.residual.shape))
+    for slope, name in zip(slopes, channels, strict=True):
+        later = moved.nudged(name, nudge).at(kept)
+        slope[:] = (equation.evaluate(equation.along(later), len(kept)) - at.residual) / nudge
+        if name in moved.moving:
+            slope[:, moved.moving[name][1, kept] * later.moving[name][1] <= 0] = 0.0
+    return slopes
+
+
+def _weights(slopes: np.ndarray, run: np.ndarray, num: int) -> np.ndarray:
+    """Rms of what a second's lag of each channel changes in each experiment, in the equation that it changes most."""
+    square = [np.mean(np.square(slopes[..., run == i]), axis=2).max(axis=1, initial=0.0) for i in range(num)]
+    return np.asarray(np.sqrt(np.array(square)).T)
+
+
+def _with_friction(equation: Equation, logs: Logs, at: Terms, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What each experiment has of its own: the lags, and dry friction that differs from run to run, which on a slow
+    run resembles a lag. With the inverse variances that are believed of them."""
+    friction = np.zeros((len(equation.moved), *at.residual.shape))
+    for k, name in enumerate(equation.moved):
+        friction[k, k] = np.sign(logs.moving[name][1]) * at.size[k]
+    belief = [1.0 / LONGEST**2] * len(slopes) + [1.0 / SCATTER**2] * len(friction)
+    return np.concatenate([slopes, friction]), np.array(belief)
+
+
+def _steps(
+    at: Terms, fit: Fit, slopes: np.ndarray, own_belief: np.ndarray, run: np.ndarray, share: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The Gauss-Newton step of what each experiment has of its own, together with the parameters, which all share; and
+    the sd of each. `slopes`: what the equations change with them (unknowns, equations, samples)."""
+    level, weight = scale_and_weight(fit.residual / at.size[:, None], fit.level)
+    root = np.sqrt(weight * (share / level**2)[:, None]) / at.size[:, None]
+    shared, own, left = at.slopes(fit.x) * root, slopes * root, fit.residual * root
+    belief = np.array([1.0 / u.sd**2 for u in at.unknowns])
+    information, gradient = np.diag(belief), belief * fit.x
+    parts = []
+    for i in range(int(run.max()) + 1):
+        t, d, r = (a[..., run == i].reshape(*a.shape[:-2], -1) for a in (shared, own, left))
+        inverse = np.linalg.inv(d @ d.T + np.diag(own_belief))
+        cross = t @ d.T @ inverse
+        information = information + t @ t.T - cross @ (d @ t.T)
+        gradient = gradient + t @ r - cross @ (d @ r)
+        parts.append((inverse, cross, inverse @ (d @ r)))
+    spread = np.linalg.pinv(information, hermitian=True)
+    change = -spread @ gradient
+    step = [-(alone + cross.T @ change) for _, cross, alone in parts]
+    variance = [np.diag(inverse + cross.T @ spread @ cross) for inverse, cross, _ in parts]
+    return np.array(step).T, np.sqrt(np.array(variance)).T
+
+
+def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
+    """The lag of all axes together in each experiment, in whole steps of the logs, at which the equation fits best."""
+    kept, num = _regular(logs, SCANNED), len(equation.dataset.experiments)
+    at = terms(equation, logs.at(kept))
+    fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
+    changed, scale = fit.residual - at.residual, (fit.level * at.size)[:, None]
+    shortest = min(e.duration for e in equation.dataset.experiments)
+    most = max(1.0, min(LONGEST, PART * shortest) / logs.step)
+    sizes = np.unique(np.round(GROWTH ** np.arange(0.0, np.log(most) / np.log(GROWTH) + 1e-9))).astype(int)
+    tried = np.concatenate([-sizes[::-1], [0], sizes])
+    cost = np.empty((len(tried), num))
+    for k, steps in enumerate(tried):
+        moved = logs.rolled(tuple(equation.axes.values()), int(steps)).at(kept)
+        residual = equation.evaluate(equation.along(moved), len(kept)) + changed
+        surprise = np.sum(np.log1p((residual / scale) ** 2), axis=0)
+        cost[k] = np.bincount(moved.run, surprise, num)
+    common = int(np.argmin(np.sum(cost, axis=1)))
+    differs = cost[common] - np.min(cost, axis=0) > OWN / ROUGH_SHARE
+    best = np.where(differs, np.argmin(cost, axis=0), common)
+    inside = (best > 0) & (best < len(tried) - 1)
+    return np.asarray(np.where(inside, tried[best], 0) * logs.step)

@@ -1,0 +1,175 @@
+"""The smoothed logs of all experiments, end to end: what moves, what drives, what else was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tendonlab.checking import smoothing
+from tendonlab.checking.spikes import outliers, spikes
+from tendonlab.data import Dataset, Experiment
+from tendonlab.simulation.catalog import SystemInfo
+
+CLEAR = 3.0  # sd of its noise that a velocity must exceed for its direction to be known
+GAP = 3.0  # median steps between two samples that make a gap
+ENDS = 4.0  # sd of the Gaussian at each end of a record where it looks beyond the record
+TIME = "time"
+
+
+@dataclass(frozen=True)
+class Logs:
+    """Arrays (channels, samples) by name of the signal, all experiments end to end.
+
+    `moving`: position, velocity and acceleration of each measured axis; `driving`: each input and its rate; `others`:
+    the other outputs. `run`: which experiment a sample is of; `time`: from the start of its experiment, s; `step`: s
+    from one to the next; `clear`: whether the equation can be judged there."""
+
+    moving: dict[str, np.ndarray]
+    driving: dict[str, np.ndarray]
+    others: dict[str, np.ndarray]
+    run: np.ndarray
+    time: np.ndarray
+    step: float
+    clear: np.ndarray
+
+    def scaled(self, signals: Sequence[str], factor: float) -> Logs:
+        """The logs with `signals` divided by a factor; "time" is the clock."""
+        if TIME in signals:
+            rates = factor ** np.arange(3.0)[:, None]
+            moving = {name: rows * rates for name, rows in self.moving.items()}
+            driving = {name: rows * rates[:2] for name, rows in self.driving.items()}
+            return replace(self, moving=moving, driving=driving)
+        return self._each(lambda name, rows: rows / factor if name in signals else rows)
+
+    def earlier(self, signal: str, by: np.ndarray) -> Logs:
+        """The logs with an output moved by `by`, s, one number per experiment, towards the past."""
+        changed = np.array((self.moving | self.others)[signal])
+        for i in np.flatnonzero(by):
+            own = self.run == i
+            changed[:, own] = _moved(self.time[own], changed[:, own], float(by[i]))
+        return self._each(lambda name, rows: changed if name == signal else rows)
+
+    def rolled(self, signals: Sequence[str], steps: int) -> Logs:
+        """The logs with axes moved by whole steps towards the past; what passes an end comes from next to it."""
+        at = np.clip(np.arange(len(self.run)) + steps, 0, len(self.run) - 1)
+        moving = {name: rows[:, at] if name in signals else rows for name, rows in self.moving.items()}
+        return replace(self, moving=moving)
+
+    def nudged(self, signal: str, by: float) -> Logs:
+        """The logs with an output moved by a small part of a step, s, towards the past."""
+        still = (self.moving | self.others)[signal]
+        rates = np.concatenate([still[1:], np.gradient(still[-1:], self.step, axis=1)])
+        return self._each(lambda name, rows: rows + by * rates if name == signal else rows)
+
+    def thinned(self, most: int) -> Logs:
+        """Every so many samples, at most `most`, of those that are clear."""
+        kept = np.flatnonzero(self.clear)
+        kept = kept[:: max(1, -(-len(kept) // most))]
+        return self.at(kept)
+
+    def at(self, kept: np.ndarray) -> Logs:
+        """These samples alone."""
+        chosen = self._each(lambda _, rows: rows[:, kept])
+        return replace(chosen, run=self.run[kept], time=self.time[kept], clear=self.clear[kept])
+
+    def _each(self, change: Callable[[str, np.ndarray], np.ndarray]) -> Logs:
+        """The logs with every channel changed."""
+        moving, driving, others = (
+            {name: change(name, rows) for name, rows in channels.items()}
+            for channels in (self.moving, self.driving, self.others)
+        )
+        return replace(self, moving=moving, driving=driving, others=others)
+
+
+def read_logs(dataset: Dataset, info: SystemInfo) -> Logs | None:
+    """The logs on a common grid; None where no axis was measured or nothing moves."""
+    axes = [s.name for s in info.outputs if s.axis is not None and s.name in dataset.signals]
+    if not axes or min(len(e.data) for e in dataset.experiments) < 8 * smoothing.BLOCK:
+        return None
+    step = float(np.median(np.concatenate([np.diff(e.time) for e in dataset.experiments])))
+    records = [_Record.of(dataset, info, e, step) for e in dataset.experiments]
+    positions = [r.values[name] for r in records for name in axes]
+    noise = [smoothing.noise_of(_despiked(e, name)) for e in dataset.experiments for name in axes]
+    if not any(np.ptp(y) > 10 * s for y, s in zip(positions, noise, strict=True)):
+        return None
+    total = sum(len(r.values[axes[0]]) for r in records)
+    sd = smoothing.width(positions, noise, total)
+    quiet = {name: max(noise[k :: len(axes)]) for k, name in enumerate(axes)}
+    return _joined([r.smoothed(info, axes, quiet, sd, step) for r in records], step * smoothing.stride(sd))
+
+
+@dataclass(frozen=True)
+class _Record:
+    """An experiment on an even grid; `whole`: whether samples are there."""
+
+    values: dict[str, np.ndarray]
+    whole: np.ndarray
+
+    @classmethod
+    def of(cls, dataset: Dataset, info: SystemInfo, experiment: Experiment, step: float) -> _Record:
+        held = {s.name: experiment.holds.get(s.name, s.between == "hold") for s in info.inputs}
+        known = {s.name for s in info.signals}
+        names = [name for name in experiment.data.columns if name in known]
+        time = experiment.time
+        clean = {name: _despiked(experiment, name, driven=name in held) for name in names}
+        values = {n: smoothing.even(time, y, step, held=held.get(n, False)) for n, y in clean.items()}
+        whole = np.ones(len(next(iter(values.values()))), dtype=bool)
+        for k in np.flatnonzero(np.diff(time) > GAP * step):
+            first, last = (round((time[j] - time[0]) / step) for j in (k, k + 1))
+            whole[first : last + 1] = False
+        return cls(values, whole)
+
+    def smoothed(self, info: SystemInfo, axes: Sequence[str], noise: dict[str, float], sd: float, step: float) -> Logs:
+        """The logs of this experiment alone. `noise`: of each axis."""
+        rate = step ** -np.arange(3.0)[:, None]
+        moving = {name: rate * self._derivatives(name, sd, 3) for name in axes}
+        inputs = [s.name for s in info.inputs if s.name in self.values]
+        driving = {name: rate[:2] * self._derivatives(name, sd, 2) for name in inputs}
+        rest = [s.name for s in info.outputs if s.name in self.values and s.name not in axes]
+        others = {name: self._derivatives(name, sd, 1) for name in rest}
+        time = step * smoothing.stride(sd) * np.arange(moving[axes[0]].shape[1])
+        clear = self._clear(sd) & np.all([_slides(moving[n], noise[n], sd, step) for n in axes], axis=0)
+        return Logs(moving, driving, others, np.zeros(len(time), dtype=int), time, 0.0, clear)
+
+    def _derivatives(self, name: str, sd: float, num: int) -> np.ndarray:
+        return np.array([smoothing.smooth(self.values[name], sd, order=order) for order in range(num)])
+
+    def _clear(self, sd: float) -> np.ndarray:
+        """Away from gaps and ends."""
+        from scipy.ndimage import minimum_filter1d
+
+        reach = int(2 * ENDS * sd) + 1
+        inside = minimum_filter1d(self.whole, reach, mode="constant", cval=0)
+        block = max(1, int(sd / smoothing.BLOCK))
+        kept = inside[: len(inside) // block * block : block]
+        return np.asarray(kept[:: smoothing.stride(sd) // block], dtype=bool)
+
+
+def _slides(rows: np.ndarray, noise: float, sd: float, step: float) -> np.ndarray:
+    """Where the direction of motion is known, and stays for as long as the Gaussian looks."""
+    speed = np.abs(rows[1])
+    return np.asarray((speed > CLEAR * noise * smoothing.spread(sd, 1) / step) & (speed > np.abs(rows[2]) * sd * step))
+
+
+def _despiked(experiment: Experiment, name: str, *, driven: bool = False) -> np.ndarray:
+    values = experiment.data[name].to_numpy(dtype=float)
+    return np.where(spikes(values) if driven else outliers(values), np.nan, values)
+
+
+def _joined(parts: Sequence[Logs], step: float) -> Logs:
+    def join(channels: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+        return {name: np.concatenate([c[name] for c in channels], axis=1) for name in channels[0]}
+
+    run = np.concatenate([np.full(len(p.time), i) for i, p in enumerate(parts)])
+    time, clear = np.concatenate([p.time for p in parts]), np.concatenate([p.clear for p in parts])
+    moving, driving, others = (join([getattr(p, kind) for p in parts]) for kind in ("moving", "driving", "others"))
+    return Logs(moving, driving, others, run, time, step, clear)
+
+
+def _moved(time: np.ndarray, rows: np.ndarray, by: float) -> np.ndarray:
+    from scipy.interpolate import CubicSpline
+
+    at = np.clip(time + by, time[0], time[-1])
+    return np.asarray(CubicSpline(time, rows, axis=1)(at))

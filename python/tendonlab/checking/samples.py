@@ -1,0 +1,135 @@
+"""What the samples show without a simulator: stamps, outliers, limits, steps, channels that stand still."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tendonlab.checking.finding import Finding
+from tendonlab.checking.smoothing import repeats, smallest_change
+from tendonlab.checking.spikes import outliers, spikes
+from tendonlab.data import Dataset, Experiment
+from tendonlab.report.numbers import number
+from tendonlab.simulation.signals import white_noise_sd
+
+GAP = 1.5  # median steps between two stamps that make a gap
+JITTER, DRIFT = 0.02, 0.01  # relative: scatter of steps, and change of their median from the first to the last quarter
+LEAST_STEPS = 8  # of a record whose stamps are judged
+PLATEAU, LEAST_RUN = 0.01, 5  # share of samples at an extreme, and samples in a row, that make a limit
+COARSE = 4.0  # times its noise that a step of a reading must be to matter
+FINE = 1000.0  # steps within the travel: finer readings need no word
+
+
+def sample_findings(dataset: Dataset) -> list[Finding]:
+    """Findings about single channels, for every experiment."""
+    steady = dataset.system().info.steady
+    found: list[Finding] = []
+    for experiment in dataset.experiments:
+        found += [] if steady else [*_stamps(experiment), *_spikes(dataset, experiment)]
+        found += _standing(dataset, experiment)
+        found += [] if steady else _limits(dataset, experiment)
+    return [*found, *([] if steady else [*_jitter(dataset), *_steps(dataset)])]
+
+
+def _jitter(dataset: Dataset) -> Iterator[Finding]:
+    """Experiments whose stamps scatter, all of them in one finding."""
+    scatter = {e.name: _scatter(np.diff(e.time)) for e in dataset.experiments if len(e.data) > LEAST_STEPS}
+    loud = {name: share for name, share in scatter.items() if share > JITTER}
+    if loud:
+        where = next(iter(loud)) if len(loud) == 1 else f"{len(loud)} of {len(dataset)} experiments"
+        text = f"the time stamps jitter by {100 * max(loud.values()):.0f} % of a step in {where}"
+        yield Finding(problem="sampling", experiment=next(iter(loud)) if len(loud) == 1 else None, detail=text)
+
+
+def _scatter(steps: np.ndarray) -> float:
+    """Robust relative sd of the steps of a clock."""
+    usual = float(np.median(steps))
+    return 1.4826 * float(np.median(np.abs(steps - usual))) / usual
+
+
+def _stamps(experiment: Experiment) -> Iterator[Finding]:
+    steps = np.diff(experiment.time)
+    if len(steps) < LEAST_STEPS:
+        return
+    usual = float(np.median(steps))
+    gaps = steps[steps > GAP * usual]
+    if len(gaps):
+        lost = int(np.sum(np.round(gaps / usual) - 1))
+        text = f"{_counted(len(gaps), 'gap')} in time, about {_counted(lost, 'sample')} lost"
+        longest = f"the longest lasts {number(float(gaps.max()))} s at a usual step of {number(usual)} s"
+        yield _note("sampling", f"{text}; {longest}", experiment, count=lost)
+    quarter = len(steps) // 4
+    change = float(np.median(steps[-quarter:]) / np.median(steps[:quarter]) - 1.0)
+    if abs(change) > max(DRIFT, _scatter(steps)):
+        text = f"the step of the clock changes by {100 * change:+.1f} % from the first to the last quarter"
+        yield _note("sampling", text, experiment)
+
+
+def _spikes(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
+    for name in experiment.data.columns:
+        if dataset.signals[name].role not in ("input", "output"):
+            continue
+        find = spikes if dataset.signals[name].role == "input" else outliers
+        count = int(find(experiment.data[name].to_numpy(dtype=float)).sum())
+        if count:
+            share = f"{_counted(count, 'sample')} of {name} ({number(100 * count / len(experiment.data), 2)} %)"
+            done = "interpolated values" if find is spikes else "these left out"
+            text = f"{share} far from the samples around; a diagnosis goes on with {done}"
+            yield _note("outliers", text, experiment, name, count)
+
+
+def _standing(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
+    for name in experiment.data.columns:
+        values = experiment.data[name].to_numpy(dtype=float)
+        kept = values[np.isfinite(values)]
+        if dataset.signals[name].role == "output" and len(kept) > 1 and np.ptp(kept) == 0:
+            yield _note("constant", f"{name} never changes: it reads {number(float(kept[0]))}", experiment, name)
+
+
+def _limits(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
+    dimensions = {s.name: s.dimension for s in dataset.system().info.signals}
+    for name in experiment.data.columns:
+        if dimensions.get(name) not in ("command", "effort", "voltage", "force"):
+            continue
+        values = experiment.data[name].to_numpy(dtype=float)
+        values = values[np.isfinite(values)]
+        if len(np.unique(values)) < len(values) // 10:
+            continue  # a command of few levels
+        for edge in (values.max(), values.min()):
+            at = values == edge
+            if at.mean() > PLATEAU and _longest(at) >= LEAST_RUN:
+                value = f"{number(float(edge))} {dataset.signals[name].si_unit}"
+                text = f"{name} stays at {value} for {100 * at.mean():.0f} % of the samples, as at a limit"
+                yield _note("saturation", text, experiment, name, int(at.sum()))
+
+
+def _steps(dataset: Dataset) -> Iterator[Finding]:
+    for name, spec in dataset.signals.items():
+        if spec.role != "output" or spec.resolution:
+            continue
+        records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset.experiments]
+        records = [r for r in records if len(r) > 10 and np.ptp(r) > 0]
+        if not records or not all(map(repeats, records)):
+            continue
+        step = float(np.median([smallest_change(r) for r in records]))
+        travel = max(float(np.ptp(r)) for r in records)
+        if step > max(COARSE * float(np.median([white_noise_sd(r) for r in records])), travel / FINE):
+            text = f"{name} changes in steps of {number(step)} {spec.si_unit}; state this as its `resolution`"
+            yield Finding(problem="quantisation", signal=name, detail=text)
+
+
+def _note(
+    problem: str, text: str, experiment: Experiment, signal: str | None = None, count: int | None = None
+) -> Finding:
+    return Finding(problem=problem, signal=signal, experiment=experiment.name, detail=text, count=count)
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def _longest(marks: np.ndarray) -> int:
+    """The most marked samples in a row."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], marks.astype(int), [0]])))
+    return int(np.max(ends[1::2] - ends[::2], initial=0))

@@ -1,0 +1,123 @@
+"""Wrong signs and scales: which one factor of a channel makes the equation of motion agree with what is believed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tendonlab.checking.equation import Equation
+from tendonlab.checking.logs import TIME, Logs
+from tendonlab.checking.regression import MOST_STEPS, Fit
+from tendonlab.checking.terms import terms
+from tendonlab.fitting.noise import integrated_time
+
+LARGEST, RATIO = 2.0**18, 8.0  # factors that are tried, and from one to the next
+ROUGH, FINE = 300, 1500
+STEPS = 6  # of a fit in the search  # samples in the search, and in what decides
+ROUGH_SHARE = 0.2  # of the samples that count as independent before the residual is known
+REFINED = 4  # of the best, which are looked at closely
+SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, beyond which factors are looked for
+EXPLAINED = 0.5  # level of the residual beyond which a corrected log explains too little to blame a channel
+LEAST_GAIN = 10.0  # nats by which a factor must improve on none
+ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
+BLOCKING = 1.5  # a factor below it is a parameter
+
+
+@dataclass(frozen=True)
+class Factor:
+    """Channels that are logged `value` times too large, the fit once they are corrected, and its gain in nats over
+    the logs as they are."""
+
+    signals: tuple[str, ...]
+    value: float
+    fit: Fit
+    gain: float = 0.0
+
+
+def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
+    """The equally good factors, best first, one for each set of channels; empty where none is needed."""
+    rough = logs.thinned(ROUGH)
+    share = np.full(len(equation.predicted), ROUGH_SHARE)
+    plain = terms(equation, rough).fit(share)
+    if np.all(plain.level < SUSPECT) and plain.strain < STRAINED:
+        return []
+    searched = [_searched(equation, rough, signals, sign, share) for signals, sign in _suspects(equation)]
+    leading = sorted(searched, key=lambda f: f.fit.cost)[:REFINED]
+    found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
+    best = min(found, key=lambda f: f.fit.cost)
+    if not _blocks(best.value) or plain.cost - best.fit.cost < LEAST_GAIN:
+        return []
+    slack = LEAST_GAIN + ALIKE_SHARE * (plain.cost - best.fit.cost)
+    found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack]
+    fine = logs.thinned(FINE)
+    share = independent(best, equation, fine)
+    base = terms(equation, fine).fit(share)
+    polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
+    judged = sorted((replace(f, gain=base.cost - f.fit.cost) for f in polished), key=lambda f: f.fit.cost)
+    best = judged[0]
+    if best.gain < LEAST_GAIN or not _blocks(best.value) or best.fit.level[0] > EXPLAINED:
+        return []
+    return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
+
+
+def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
+    """Sets of channels that may share a factor, with its sign."""
+    info, known = equation.system.info, equation.dataset.signals
+    inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio"]
+    axes = tuple(equation.axes.values())
+    sets = [(name,) for name in (*inputs, *axes, *equation.others)] + ([axes] if len(axes) > 1 else [])
+    for signals in sets:
+        yield signals, 1.0
+        yield signals, -1.0
+    yield (TIME,), 1.0
+
+
+def _searched(equation: Equation, logs: Logs, signals: tuple[str, ...], sign: float, share: np.ndarray) -> Factor:
+    """The best of factors far apart."""
+    num = int(np.log(LARGEST) / np.log(RATIO))
+    values = sign * RATIO ** np.arange(-num, num + 1.0)
+    tried = [Factor(signals, float(v), _fitted(equation, logs, signals, v, share, STEPS)) for v in values]
+    return min(tried, key=lambda f: f.fit.cost)
+
+
+def _refined(
+    equation: Equation, logs: Logs, factor: Factor, share: np.ndarray, reach: float, accuracy: float
+) -> Factor:
+    """The best factor within `reach` of one."""
+    from scipy.optimize import minimize_scalar
+
+    def cost(logarithm: float) -> float:
+        return _fitted(equation, logs, factor.signals, factor.value * np.exp(logarithm), share).cost
+
+    bounds = (-np.log(reach), np.log(reach))
+    found = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": accuracy})
+    value = float(factor.value * np.exp(found.x))
+    return Factor(factor.signals, value, _fitted(equation, logs, factor.signals, value, share))
+
+
+def _fitted(
+    equation: Equation, logs: Logs, signals: tuple[str, ...], value: float, share: np.ndarray, steps: int = MOST_STEPS
+) -> Fit:
+    return terms(equation, logs.scaled(signals, value)).fit(share, steps=steps)
+
+
+def independent(factor: Factor, equation: Equation, logs: Logs) -> np.ndarray:
+    """Share of the samples of each equation that count as independent, from the residual of the best factor."""
+    rough = np.full(len(equation.predicted), ROUGH_SHARE)
+    residual = _fitted(equation, logs, factor.signals, factor.value, rough).residual
+    return shares(residual, logs.run)
+
+
+def shares(residual: np.ndarray, run: np.ndarray) -> np.ndarray:
+    """Share of the samples of each row that count as independent, by the memory within the experiments."""
+    memory = [
+        np.mean([integrated_time(np.clip(row[run == i], *np.quantile(row, (0.02, 0.98)))) for i in np.unique(run)])
+        for row in residual
+    ]
+    return 1.0 / np.maximum(np.array(memory), 1.0)
+
+
+def _blocks(value: float) -> bool:
+    return value < 0 or value >= BLOCKING or value <= 1 / BLOCKING

@@ -1,0 +1,71 @@
+"""Outliers: single samples, or a few in a row, far from their neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tendonlab.checking.smoothing import smallest_change
+from tendonlab.data import Dataset, Experiment
+
+WINDOW = 7  # samples of the running median: up to three outliers in a row are seen
+AROUND = 51  # samples over which the noise of a record is looked at
+DEVIATIONS = 8.0  # robust standard deviations from the running median that make an outlier
+SPIKE = 25.0  # the same, of an input: what the controller did is no error
+BEND = 6.0  # times what the running median itself bends nearby
+RETURN = 0.2  # of a spike of an input, by which its neighbours may differ
+MOST = 0.03  # of a record: what is more frequent belongs to the signal
+
+
+def outliers(values: np.ndarray, *, deviations: float = DEVIATIONS) -> np.ndarray:
+    """Which samples of a record are outliers, shape (n,); NaN is none."""
+    from scipy.ndimage import maximum_filter1d, median_filter
+
+    kept = np.flatnonzero(np.isfinite(values))
+    found = np.zeros(len(values), dtype=bool)
+    if len(kept) < 3 * WINDOW:
+        return found
+    y = values[kept]
+    middle = median_filter(y, WINDOW, mode="nearest")
+    away = np.abs(y - middle)
+    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="nearest"))
+    bends = np.abs(np.diff(middle, 2, prepend=middle[0], append=middle[-1]))
+    allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * maximum_filter1d(bends, WINDOW)
+    found[kept] = away > allowed
+    return found if found.mean() <= MOST else np.zeros_like(found)
+
+
+def spikes(values: np.ndarray) -> np.ndarray:
+    """Outliers of an input: single samples after which it is back where it was. Jumps and pulses drive the rig."""
+    found = outliers(values, deviations=SPIKE)
+    single = found.copy()
+    single[1:] &= ~found[:-1]
+    single[:-1] &= ~found[1:]
+    at = np.flatnonzero(single[1:-1]) + 1
+    before, after = values[at - 1], values[at + 1]
+    back = np.abs(after - before) < RETURN * np.abs(values[at] - 0.5 * (before + after))
+    found[:] = False
+    found[at[back]] = True
+    return found
+
+
+def without_outliers(dataset: Dataset) -> Dataset:
+    """The dataset with its outliers taken out: missing in outputs, interpolated in inputs."""
+    return replace(dataset, experiments=tuple(_cleaned(dataset, e) for e in dataset.experiments))
+
+
+def _cleaned(dataset: Dataset, experiment: Experiment) -> Experiment:
+    data = experiment.data.copy()
+    for name in data.columns:
+        if dataset.signals[name].role not in ("input", "output"):
+            continue
+        driven = dataset.signals[name].role == "input"
+        values = data[name].to_numpy(dtype=float)
+        found = spikes(values) if driven else outliers(values)
+        if not found.any():
+            continue
+        data.loc[found, name] = np.nan
+        if driven:
+            data[name] = data[name].interpolate(method="index", limit_direction="both")
+    return replace(experiment, data=data)

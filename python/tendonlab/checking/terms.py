@@ -1,0 +1,136 @@
+"""The equation of motion as a regression: its residual, and a column for every number that may differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab.checking.equation import Equation, Stretch
+from tendonlab.checking.logs import Logs
+from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown, fit, growth
+from tendonlab.data import NominalParameter
+from tendonlab.fitting.priors import DAMPING_LOG_SD, LOG_SD
+from tendonlab.simulation.catalog import ParameterInfo
+
+NUDGE = 1e-3  # relative change by which a column is found
+EXTRA = 0.3  # of the rms that an equation predicts: sd of offsets, and of friction that the simulator may lack
+OFFSET = 0.1  # of the travel: sd of the zero of an angle
+
+Column = tuple[Unknown, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Terms:
+    """`residual` (equations, samples) at the nominal parameters, `columns` (unknowns, equations, samples), `size`: rms
+    of what each equation predicts, in the unit of its residual."""
+
+    residual: np.ndarray
+    columns: np.ndarray
+    unknowns: tuple[Unknown, ...]
+    size: np.ndarray
+
+    def slopes(self, x: np.ndarray) -> np.ndarray:
+        """What the equations change with each unknown at `x` (unknowns, equations, samples)."""
+        return np.asarray(self.columns * growth(x, self.unknowns)[:, None, None])
+
+    def fit(self, share: np.ndarray, *, steps: int = MOST_STEPS) -> Fit:
+        """The most probable unknowns; `share` of the samples of each equation counts as independent."""
+        return fit(self.residual, self.columns, self.unknowns, self.size, share, steps=steps)
+
+
+def terms(equation: Equation, logs: Logs) -> Terms:
+    """The regression of `equation` on `logs`."""
+    stretches = equation.along(logs)
+    residual = equation.evaluate(stretches, len(logs.run))
+    zeros, stiffness = _zeros(equation, logs, stretches, residual)
+    silent = equation.evaluate([s.without_inputs(equation.system) for s in stretches], len(logs.run))
+    size = _size(equation, logs, residual, silent, stiffness)
+    rows: list[Column] = []
+    for k, p in enumerate(equation.system.info.parameters):
+        stated = equation.dataset.parameters.get(p.name)
+        if stated is None or p.name not in equation.system.parameters or not _is_free(p, stated):
+            continue
+        if p.role == "command_gain" and stated.value:
+            rows.append(_gain(p, stated, residual, silent))
+            continue
+        nudge = NUDGE * (abs(stated.value) or abs(p.typical) or 1.0)
+        nudge = nudge if stated.value + nudge <= p.upper else -nudge
+        moved = equation.evaluate(stretches, len(logs.run), parameter=k, nudge=nudge)
+        rows.append(_believed(p, stated, (moved - residual) / nudge / size[:, None], size))
+    rows += [*zeros, *_extras(equation, logs, size)]
+    seen = [(u, c) for u, c in rows if np.any(c)]
+    columns = np.array([c for _, c in seen]).reshape(len(seen), *residual.shape)
+    return Terms(residual, columns, tuple(u for u, _ in seen), size)
+
+
+def _gain(p: ParameterInfo, stated: NominalParameter, residual: np.ndarray, silent: np.ndarray) -> Column:
+    """The gain of the command: its inverse scales all else, so that residuals stay in the unit of what was logged. If
+    it scaled the command, the least gain would leave the least residual."""
+    driven = np.any(residual != silent, axis=1)[:, None]
+    sd = LOG_SD if stated.sd is None else stated.sd / abs(stated.value)
+    return Unknown(p.name, sd=sd, logarithm=True), np.where(driven, silent, 0.0)
+
+
+def _size(
+    equation: Equation, logs: Logs, residual: np.ndarray, silent: np.ndarray, stiffness: dict[str, np.ndarray]
+) -> np.ndarray:
+    """Rms of what the inputs contribute to the first equation, an axis to its own, and an output to its own."""
+    sizes = [rms((residual - silent)[0])]
+    for k, name in enumerate(equation.moved[1:], start=1):
+        sizes.append(rms(stiffness[name][k] * logs.moving[name][0]))
+    sizes += [rms(logs.others[name]) for name in equation.others]
+    return np.array([size or rms(residual[k]) or 1.0 for k, size in enumerate(sizes)])
+
+
+def _zeros(
+    equation: Equation, logs: Logs, stretches: Sequence[Stretch], residual: np.ndarray
+) -> tuple[list[Column], dict[str, np.ndarray]]:
+    """Columns of where each angle is zero, and what the equations change with each angle."""
+    columns, stiffness = [], {}
+    for axis, name in equation.axes.items():
+        travel = OFFSET * float(np.std(logs.moving[name][0])) or 1.0
+        moved = equation.evaluate([s.shifted(axis, NUDGE * travel) for s in stretches], len(logs.run))
+        slope = (moved - residual) / NUDGE
+        stiffness[name] = slope / travel
+        columns.append((Unknown(f"zero of {name}", sd=1.0), slope))
+    return columns, stiffness
+
+
+def _is_free(p: ParameterInfo, stated: NominalParameter) -> bool:
+    """Whether a parameter may differ from its nominal value; a gain or ratio without `sd` is taken at its word."""
+    if p.purpose in ("share", "condition") or stated.sd == 0:
+        return False
+    known = p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
+    return stated.sd is not None or not (known or (stated.value == 0.0 and p.typical == 0.0))
+
+
+def _believed(p: ParameterInfo, stated: NominalParameter, slope: np.ndarray, size: np.ndarray) -> Column:
+    """What is believed of a parameter: of its logarithm where it cannot be negative, as in a fit. `slope` is relative
+    to the equations' `size`."""
+    default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
+    scale = abs(stated.value) or EXTRA / (float(np.max(np.sqrt(np.mean(slope**2, axis=1)))) or 1.0)
+    sd = default if stated.sd is None else stated.sd / scale
+    if not stated.value:
+        sd = 1.0 if stated.sd is None else sd
+        return Unknown(p.name, sd=sd, positive=p.lower >= 0), slope * scale * size[:, None]
+    return Unknown(p.name, sd=sd, logarithm=p.lower >= 0 and stated.value > 0), slope * scale * size[:, None]
+
+
+def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column]:
+    """An offset of every equation, and friction that the simulator may lack."""
+    for k, unit in enumerate(size):
+        parts = [("offset", np.ones(len(logs.run)), False)]
+        if k < len(equation.moved):
+            velocity = logs.moving[equation.moved[k]][1]
+            parts += [("dry friction", np.sign(velocity), True), ("viscous friction", velocity, True)]
+        for name, part, positive in parts:
+            column = np.zeros((len(size), len(logs.run)))
+            column[k] = part * unit / (rms(part) or 1.0)
+            yield Unknown(name, sd=EXTRA, positive=positive), column
+
+
+def rms(x: np.ndarray) -> float:
+    """Root of the mean square; 0 of nothing."""
+    return float(np.sqrt(np.mean(np.square(x)))) if x.size else 0.0
