@@ -103,6 +103,7 @@ def _add_diagnose(commands: Any) -> None:
     parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write report.html, report.json and figures here")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="default: 0; same seed, same answer")
+    parser.add_argument("--force", action="store_true", help="go on although the check of the logs forbids it")
     parser.add_argument("--no-figures", action="store_true", help="write no PNG and SVG beside the report")
     _add_progress(parser)
 
@@ -191,7 +192,7 @@ def _diagnose(given: Arguments) -> int:
     rig = load(_folder(given.dataset))
     if given.out is not None:
         prepare_folder(given.out)
-    diagnosis = diagnose(rig, seed=given.seed, progress=not given.quiet)
+    diagnosis = diagnose(rig, seed=given.seed, progress=not given.quiet, force=given.force)
     if given.out is not None:
         diagnosis.report(given.out, figures=not given.no_figures)
     _print_diagnosis(diagnosis, given.out)

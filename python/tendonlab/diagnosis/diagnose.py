@@ -5,9 +5,13 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
+from tendonlab.checking.check import check
+from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.diagnosis.answer.answer import answer
+from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import rough_fit, under_noise_floor
 from tendonlab.diagnosis.search.select import select_effects
 from tendonlab.diagnosis.search.workshop import open_workshop
@@ -16,6 +20,8 @@ from tendonlab.fitting.case import make_case
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
 from tendonlab.simulation.system import System
+
+FORCED = "The check of the logs found problems that mislead a diagnosis; it was made by force."
 
 log = logging.getLogger("tendonlab")
 
@@ -27,9 +33,12 @@ def diagnose(
     library: str | Sequence[str] = "default",
     seed: int = 0,
     progress: bool = True,
+    force: bool = False,
 ) -> Diagnosis:
     """Say where the gap between `system` (the dataset's own simulator unless given) and the logs lies, which unmodelled
     effect causes it, and how far the gap shrinks on held-out experiments once it is added.
+    The logs are checked first, as `tendonlab.check` does: a wrong sign, scale or clock ends it with the verdict
+    "data_fault", unless `force`. Outliers are left out.
 
     `library`: "default", every effect that the system takes, or names as "joint:stribeck". `seed`: the bootstrap's.
     Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect or a
@@ -37,6 +46,12 @@ def diagnose(
     require_dataset(dataset)
     began, seed = time.monotonic(), checked(seed)
     names = _library(dataset, library)
+    found = check(dataset, system=system)
+    if found.blocks and not force:
+        used = dataset.system() if system is None else system
+        return data_fault(dataset, used, found, seed=seed, seconds=time.monotonic() - began)
+    if any(finding.problem == "outliers" for finding in found.findings):
+        dataset = without_outliers(dataset)
     with open_workshop(names, progress=progress) as shop:
         case = make_case(dataset, system)
         rough = rough_fit(case, shop.cancel)
@@ -46,7 +61,9 @@ def diagnose(
         tuned = fitter.fit(rough.system, initial=initial)
         search = select_effects(fitter, tuned, shop)
         log.info("selected %s", search.selected)
-        return answer(search, nominal, seed=seed, seconds=lambda: time.monotonic() - began)
+        why = answer(search, nominal, seed=seed, seconds=lambda: time.monotonic() - began)
+    warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
+    return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
 
 
 def _library(dataset: Dataset, library: str | Sequence[str]) -> Sequence[str] | None:

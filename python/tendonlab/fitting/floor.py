@@ -73,12 +73,19 @@ def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -
     for i, experiment in enumerate(case.experiments):
         if experiment.repeat is not None:
             groups.setdefault(experiment.repeat, []).append(i)
-    repeats = [g for g in groups.values() if len(g) > 1 and len({len(case.prepared[i].measured[0]) for i in g}) == 1]
+    repeats = [
+        g for g in groups.values() if len(g) > 1 and len(_shared([case.experiments[i].time for i in g])[0]) > AR_ORDER
+    ]
     return _from_repeats(case, seen, repeats) if repeats else _without_repeats(case, seen, fitted)
 
 
 def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[Sequence[int]]) -> Floor:
     members = [i for g in repeats for i in g]
+    seen = list(seen)
+    for g in repeats:
+        for i, kept in zip(g, _shared([case.experiments[i].time for i in g]), strict=True):
+            own = seen[i]
+            seen[i] = Sensitivities(own.residual[:, kept], own.friction[:, :, kept], own.initial[:, :, kept])
     differences = [
         (seen[i].residual - np.mean([seen[j].residual for j in g], axis=0)) * np.sqrt(len(g) / (len(g) - 1))
         for g in repeats
@@ -94,6 +101,20 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
             _rms([d[c] for d in differences]), 0.3 * float(case.noise[c])
         )  # coarse readings may repeat exactly
     return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
+
+
+def _shared(times: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """For each record the samples at the instants, counted from its first one, that all records have to half a step."""
+    at = min((t - t[0] for t in times), key=len)
+    half = 0.5 * float(np.median(np.diff(at)))
+    picked, common = [], np.ones(len(at), dtype=bool)
+    for t in times:
+        own = t - t[0]
+        after = np.clip(np.searchsorted(own, at), 1, len(own) - 1)
+        nearest = after - (at - own[after - 1] < own[after] - at)
+        common &= np.abs(own[nearest] - at) <= half
+        picked.append(nearest)
+    return [nearest[common] for nearest in picked]
 
 
 def _without_repeats(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:

@@ -85,6 +85,8 @@ def embed(svg: str, png: Callable[[], bytes], *, name: str, alt: str) -> Markup:
 
 def draw_all(diagnosis: Diagnosis) -> dict[str, Picture]:
     """Every figure for which the diagnosis holds data, by name: gap, overlay, where, effects."""
+    if not diagnosis.effects and all(errors["refitted"] is None for errors in diagnosis.gap.values()):
+        return {}  # nothing was fitted; loading matplotlib takes longer than the check of the logs
     import matplotlib
 
     draw = {"gap": _gap, "overlay": _overlay, "where": _where, "effects": _effects}

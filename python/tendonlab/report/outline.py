@@ -19,6 +19,11 @@ def _always(_: Diagnosis) -> bool:
     return True
 
 
+def _judged(diagnosis: Diagnosis) -> bool:
+    """Whether anything is said about effects."""
+    return diagnosis.verdict != "data_fault"
+
+
 @dataclass(frozen=True)
 class Section:
     """`name`: its anchor on the page. `render` gives its blocks, `when` says whether it is shown at all."""
@@ -32,8 +37,10 @@ class Section:
 
 SECTIONS = (
     Section("data", "Data", "what looks wrong with the logs themselves", problems, when=lambda why: bool(why.data)),
-    Section("where", "Where", "which signal, element and regime carries the gap", location),
-    Section("which", "Which", "candidate effects, and the probability that each is part of the cause", causes),
+    Section("where", "Where", "which signal, element and regime carries the gap", location, when=_judged),
+    Section(
+        "which", "Which", "candidate effects, and the probability that each is part of the cause", causes, when=_judged
+    ),
     Section("how-far", "How far", "the held-out gap, against the noise floor", extent),
     Section("next", "What next", "the measurements that would decide most", next_steps),
     Section("warnings", "Warnings", "", warnings),

@@ -23,7 +23,8 @@ def next_steps(diagnosis: Diagnosis) -> list[Block]:
     items = [
         (capital(str(entry["description"])), _purpose(entry, diagnosis.system)) for entry in diagnosis.next_experiments
     ]
-    why = [] if diagnosis.indistinguishable else [Text(text=_NOT_TIED, brief=True)]
+    corrects = diagnosis.verdict == "data_fault"
+    why = [] if diagnosis.indistinguishable or corrects else [Text(text=_NOT_TIED, brief=True)]
     gains = any(entry.get("expected_gain") is not None for entry in diagnosis.next_experiments)
     note = [Text(text=_GAIN, note=True)] if gains else []
     return [*why, Points(items=items, style="numbered", brief=True), *note]
