@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
     from tendonlab.simulation.catalog import kinds, system_info
     from tendonlab.simulation.records import Experiment
-    from tendonlab.simulation.sweep import sweep
     from tendonlab.simulation.system import System
     from tendonlab.simulation.trajectory import Trajectory
+    from tendonlab.sweeping.sweep import sweep
 
     __version__: str
 
@@ -68,9 +68,9 @@ _HOMES = {
     "tendonlab.report.diagnosis": "Diagnosis",
     "tendonlab.simulation.catalog": "kinds system_info",
     "tendonlab.simulation.records": "Experiment",
-    "tendonlab.simulation.sweep": "sweep",
     "tendonlab.simulation.system": "System",
     "tendonlab.simulation.trajectory": "Trajectory",
+    "tendonlab.sweeping.sweep": "sweep",
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 _PACKAGES = (
@@ -85,15 +85,14 @@ _PACKAGES = (
     "procedures",
     "report",
     "simulation",
+    "sweeping",
 )
 
 if not TYPE_CHECKING:  # otherwise every misspelt name would pass the type checker
 
     def __getattr__(name: str) -> object:
         if name == "__version__":
-            from importlib.metadata import version
-
-            value = version("tendonlab")
+            value = _import_module("tendonlab.version").version()
         elif name in _HOME_OF:
             value = getattr(_import_module(_HOME_OF[name]), name)
         elif name in _PACKAGES:

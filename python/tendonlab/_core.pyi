@@ -87,6 +87,7 @@ class EffectInfo:
     name: Final[str]
     element: Final[str]
     effect: Final[str]
+    group: Final[str]
     noun: Final[str]
     phrase: Final[str]
     equation: Final[str]
@@ -96,6 +97,7 @@ class EffectInfo:
     needs: Final[tuple[str, ...]]
     roles: Final[int]
     structural: Final[bool]
+    law: Final[type[Law]]
 
 class SystemInfo:
     def __init__(self, kind: str) -> None: ...
@@ -250,6 +252,17 @@ def simulate(
     seeds: Sequence[tuple[str, int]],
     settings: Settings,
 ) -> dict[str, Any]: ...
+def simulate_many(
+    kind: str,
+    values: np.ndarray,
+    active: np.ndarray,
+    experiment: Experiment,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    settings: Settings,
+    channels: Sequence[int],
+    out: np.ndarray,
+) -> list[str]: ...
 def balance(
     kind: str,
     values: Sequence[float],

@@ -1,5 +1,7 @@
 """What a valid dataset becomes: SI frames, filled inputs, defaults and splits. Expected numbers are worked by hand."""
 
+import copy
+import pickle
 import shutil
 
 import h5py
@@ -32,6 +34,28 @@ def test_tiny_dataset_is_read_as_written(draft, write):
     np.testing.assert_array_equal(frame["motor_torque"], draft.frames["one.csv"]["u"])
     assert dataset.signals["joint_velocity"].noise_sd == 0.001
     assert dataset["one"].duration == pytest.approx(0.19)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))])
+def test_a_copy_of_a_dataset_equals_it(draft, write, copied):
+    draft.frames["one.csv"].loc[4, "q"] = np.nan  # a missing sample equals another
+    dataset = load(write(draft))
+    other = copied(dataset)
+    assert other is not dataset
+    assert other == dataset
+    assert other.system() == dataset.system()
+
+
+def test_datasets_differ_where_a_sample_or_a_parameter_does(draft, write):
+    folder = write(draft)
+    dataset = load(folder)
+    assert load(folder) == dataset
+    assert dataset != folder
+    draft.toml["system"]["parameters"]["inertia"]["value"] = 0.021
+    assert load(write(draft)) != dataset
+    draft.toml["system"]["parameters"]["inertia"]["value"] = 0.02
+    draft.frames["two.csv"].loc[7, "q"] += 1e-9
+    assert load(write(draft)) != dataset
 
 
 def test_path_may_name_the_toml_or_be_text(draft, write):

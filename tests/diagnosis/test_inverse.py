@@ -1,10 +1,15 @@
 """Inverse dynamics: each friction amplitude of an axis is a column of its regression."""
 
+from pathlib import Path
+
 import numpy as np
+import pandas as pd
 import pytest
 
 import tendonlab as tl
-from tendonlab.diagnosis.answer.inverse import amplitudes, effort_column
+from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
+from tendonlab.diagnosis.answer.inverse import amplitudes, effort_column, inverse_dynamics
+from tendonlab.fitting.case import Case, make_case
 
 VELOCITY = np.array([-1.0, 0.5, 2.0])
 
@@ -34,3 +39,47 @@ def test_direction_dependence_enters_by_its_law_of_friction(axis: tl.System) -> 
 
 def test_what_does_not_push_the_axis_is_noeffort_column(axis: tl.System) -> None:
     assert amplitudes(axis) == ["viscous", "coulomb", "joint_viscous_asymmetry"]
+
+
+TRUE = {"inertia": 0.5, "viscous": 0.4, "coulomb": 0.3, "gravity_torque": 0.0, "torque_constant": 2.0}
+TIME = np.arange(0.0, 3.0, 0.002)
+
+
+def logged(name: str, frequency: float) -> Experiment:
+    """A run of an axis with dry friction, of which the simulator knows nothing; the command is a voltage."""
+    rig = tl.System(kind="rigid_joint", parameters=TRUE, effects=("joint:coulomb", "joint:viscous"))
+    command = pd.DataFrame({"motor_torque": np.sin(2 * np.pi * frequency * TIME)}, index=pd.Index(TIME, name="t"))
+    data = command.assign(joint_angle=rig.simulate(command, tolerance=1e-8)["joint_angle"])
+    return Experiment(name=name, data=data, initial={"joint_angle": 0.0, "joint_velocity": 0.0})
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    nominal = {name: NominalParameter(value) for name, value in TRUE.items() if name != "coulomb"}
+    signals = {
+        "motor_torque": SignalSpec("motor_torque", "u", "N*m", "input", True),
+        "joint_angle": SignalSpec("joint_angle", "q", "rad", "output", False, noise_sd=1e-4),
+    }
+    dataset = Dataset(
+        name="axis", description="", kind="rigid_joint", axis="rotary", nominal_effects=("joint:viscous",),
+        parameters=nominal, controller=None, signals=signals, path=Path(),
+        experiments=(logged("slow", 0.7), logged("fast", 1.1)),
+    )  # fmt: skip
+    return make_case(dataset)
+
+
+def test_a_regression_gives_the_parameters_of_the_axis_in_units_of_effort(case: Case) -> None:
+    """The row of each model names what was added to the nominal one. The filter smears each jump of dry friction over a
+    sixtieth of a second, which takes 3 % from the level."""
+    with_friction = case.system.with_effects({"joint:coulomb": {"coulomb": 0.1}})
+    table = inverse_dynamics(case, [case.system, with_friction], judged=[1])
+    assert table is not None
+    frame = table.frame
+    assert list(frame.index) == ["nominal structure", "nominal structure + joint:coulomb"]
+    found = frame.loc["nominal structure + joint:coulomb"]
+    for name in ("inertia", "viscous", "coulomb"):
+        assert found[name] == pytest.approx(TRUE[name], rel=0.05), name
+    assert np.isnan(frame.loc["nominal structure", "coulomb"])
+    for error in ("fitted rms", "held-out rms"):
+        assert found[error] < 0.3 * frame.loc["nominal structure", error]
+    assert "rms in N·m" in table.note

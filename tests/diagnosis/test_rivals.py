@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
 
+from tendonlab import _core
 from tendonlab.diagnosis.answer.verdict import marginals
-from tendonlab.diagnosis.search.contest import Round, probabilities
-from tendonlab.diagnosis.search.rivals import Place, drop_effects
+from tendonlab.diagnosis.search.contest import Round, next_effect, probabilities
+from tendonlab.diagnosis.search.rivals import Place, drop_effects, improve
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial
+from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
@@ -89,6 +93,25 @@ def test_a_rival_is_the_best_other_trial_that_is_established_and_not_far_behind(
     assert rival(holder, trial(DELAY, 70.0, left_out=1.0)) is None
 
 
+@pytest.mark.parametrize(("ahead", "swaps"), [(-5.0, False), (5.0, False), (15.0, True)])
+def test_a_rival_takes_over_where_it_is_clearly_better(
+    trial: Callable[..., Trial], fitter: Fitter, nominal: Fitted, ahead: float, swaps: bool
+) -> None:
+    """By more evidence than would establish an effect. The model is full, so no effect is added to the rival."""
+    others = replace(nominal, added=(ASYMMETRY, "load:offset"))
+    base = replace(nominal, added=(STRIBECK, *others.added))
+    holder, rival = trial(STRIBECK, 100.0), trial(DELAY, 100.0 + ahead)
+    contest = Round.of(others, (), (holder, rival), established={STRIBECK, DELAY}, bar=DETECT, accepted=holder)
+    place = Place(others, holder, contest)
+    with ThreadPoolExecutor(1) as pool:
+        shop = Workshop(pool, _core.Cancel(), progress=False, library=())
+        improved = improve(fitter, base, [place], {place.key: place}, shop)
+    assert (improved is not None) == swaps
+    if improved is not None:
+        assert improved.won is not None
+        assert improved.won.holder is rival
+
+
 def test_a_rival_takes_the_place_and_not_the_companions(trial: Callable[..., Trial], nominal: Fitted) -> None:
     others = replace(nominal, added=(ASYMMETRY,))
     holder, rival = trial(STRIBECK, 100.0), trial(DELAY, 120.0)
@@ -106,6 +129,26 @@ def test_dropping_an_effect_keeps_the_values_of_all_else(fitter: Fitter, nominal
     left = drop_effects(fitter, replace(nominal, system=tuned, added=(STRIBECK, "actuation:offset")), [STRIBECK])
     assert STRIBECK not in left.effects
     assert left.parameters == {name: value for name, value in tuned.parameters.items() if name not in stribeck}
+
+
+def test_progress_says_for_which_effect_candidates_are_screened(
+    fitter: Fitter, nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    labels = []
+    monkeypatch.setattr(Workshop, "screen_all", lambda shop, fitter, base, label: labels.append(label) or [])
+    with ThreadPoolExecutor(1) as pool:
+        shop = Workshop(pool, _core.Cancel(), progress=False, library=())
+        for added in ((), (STRIBECK,), (STRIBECK, DELAY)):
+            assert next_effect(fitter, replace(nominal, added=added), largest_gain=0.0, shop=shop) is None
+    assert labels == ["effect", "effect 2", "effect 3"]
+
+
+def test_overwhelming_evidence_gives_probabilities(trial: Callable[..., Trial]) -> None:
+    trials = [trial(STRIBECK, 1e6), trial(ASYMMETRY, 1e6 - 4.0), trial(DELAY, 2e3)]
+    found = probabilities(trials, {t.effect for t in trials}, DETECT, temperature=4.0)
+    assert found[STRIBECK] == pytest.approx(1.0 / (1.0 + math.exp(-1.0)))
+    assert found[ASYMMETRY] == pytest.approx(1.0 - found[STRIBECK])
+    assert found[DELAY] == found[None] == 0.0
 
 
 def test_effects_that_are_not_established_rank_behind_none(trial: Callable[..., Trial]) -> None:

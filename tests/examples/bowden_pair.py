@@ -10,6 +10,7 @@ EXAMPLE = Example(
         "stribeck_velocity": 0.2,
         "threshold_velocity": 0.1,
         "threshold_slope": 60.0,
+        "gate_share": 1.0,
         "input_radius": 0.05,
         "output_radius": 0.06,
         "sheath_length": 0.8,

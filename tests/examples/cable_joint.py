@@ -1,6 +1,6 @@
 import numpy as np
 
-from examples import Example, T
+from examples import Acting, Example, T
 from tendonlab.papers import s2
 
 RIG = s2.constants(viscous_reading="C")
@@ -29,8 +29,28 @@ def parameters() -> dict[str, float]:
     return found
 
 
+def acting() -> dict[str, Acting]:
+    """A cable of less tension than its toe. A guide whose cable passes the edge of its branches both ways, and one that
+    moves at its Stribeck velocity. Nuts that are driven and stop for 0.1 s, with guides as identified."""
+    found = {"cable:toe_region": Acting(parameters={"cable_toe_tension": 300.0})}
+    there_and_back = {"voltage": 100.0 * np.cos(2 * np.pi * T / 0.3)}
+    for guide in ("bushing_1", "bushing_2"):
+        edges = {f"{guide}_c1": 1e-3, f"{guide}_c2": 1e-3}
+        low = {f"{guide}_static_excess": 20.0, f"{guide}_stribeck_velocity": 1e-3}
+        found[f"{guide}:bushing_branches"] = Acting(parameters=edges, inputs=there_and_back)
+        found[f"{guide}:stribeck"] = Acting(parameters=low)
+    corners = [0.0, 0.0512, 0.1023, 0.1124, 0.2013, 0.2522]  # s: none on a sample
+    nuts = np.interp(T, corners, [0.0, 0.02, 0.02, 0.0, 0.0, -0.02])
+    guides = {name: value for name, value in s2.parameters(RIG).items() if name.startswith("bushing")}
+    found["stiction:hold"] = Acting(
+        parameters={**guides, "stiction_hold": 0.9}, inputs={"actuator_velocity": nuts}, between="linear"
+    )
+    return found
+
+
 EXAMPLE = Example(
     parameters=parameters(),
     inputs={"voltage": 30.0 * np.sin(2 * np.pi * T) + 10.0 * np.sin(2 * np.pi * 2.3 * T + 1.0)},
     scale=scale,
+    acting=acting(),
 )

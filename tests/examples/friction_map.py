@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from examples import Example, T
+from examples import Acting, Example, T
 
 ORDER = {"effort": 0.2, "flow": 40.0, "damping": 0.005, "output": 0.1}
 
@@ -23,4 +23,5 @@ EXAMPLE = Example(
     scale=lambda element, dimension: ORDER.get(dimension, 1.0),
     events=False,
     between="linear",
+    acting={"contact:static_lugre": Acting(parameters={"contact_lugre_static_friction": 0.3})},  # unlike the kinetic
 )

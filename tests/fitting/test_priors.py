@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tendonlab._core import Free
-from tendonlab.fitting.priors import Scale, free_parameters
+from tendonlab.fitting.priors import AMPLITUDE_SD, SHAPE_LOG_SD, Scale, free_parameters, start_of
 from tendonlab.simulation.records import NominalParameter
 from tendonlab.simulation.system import System
 
@@ -62,3 +62,19 @@ def test_a_value_below_0_has_the_prior_that_is_stated(sd: float | None, scale: f
     assert (free.name, free.log, free.sd) == ("gravity_torque", False, prior)
     assert free.scale == pytest.approx(scale)
     assert free.value(free.mean) == pytest.approx(-0.5)
+
+
+def test_an_added_effect_starts_at_nothing_with_a_shape_that_is_typical_of_the_rig() -> None:
+    """Its amplitude may go to either side of 0 by the scale of the efforts; its shape is known to a factor."""
+    seen = {"joint": Scale(effort=3.0, flow=0.5, displacement=1.0)}
+    rig = System(kind="rigid_joint", parameters={"inertia": 1.0, "gravity_torque": 0.5, "torque_constant": 1.0})
+    system = rig.with_effects({"joint:stribeck": start_of(rig, "joint:stribeck", seen)})
+    amplitude, shape = free_parameters(system, {}, seen, added=["joint:stribeck"])
+    assert (amplitude.name, amplitude.log, amplitude.mean, amplitude.sd) == (
+        "joint_static_excess", False, 0.0, AMPLITUDE_SD,
+    )  # fmt: skip
+    assert amplitude.start == 0.0
+    assert amplitude.value(1.0) == pytest.approx(3.0 * 0.05)  # the typical excess is a twentieth of the effort
+    assert (shape.name, shape.log, shape.mean, shape.sd) == ("joint_stribeck_velocity", True, 0.0, SHAPE_LOG_SD)
+    assert shape.value(0.0) == pytest.approx(0.5 * 0.1)
+    assert shape.value(math.log(2.0)) == pytest.approx(2.0 * shape.value(0.0))

@@ -227,6 +227,8 @@ def test_a_nominal_value_at_its_bound_that_nothing_informs_is_not_at_its_bound()
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda fit: pickle.loads(pickle.dumps(fit))], ids=["copy", "pickle"])
 def test_a_copy_of_a_result_is_the_same_and_works(fit: Any, copied: Any) -> None:
     other = copied(fit)
+    assert other == fit
+    assert replace(other, noise_sd={name: 2.0 * sd for name, sd in fit.noise_sd.items()}) != fit
     pd.testing.assert_frame_equal(other.parameters, fit.parameters)
     assert other.to_dict() == fit.to_dict()
     first, second = (one.profile("viscous", num_points=3) for one in (fit, other))

@@ -94,3 +94,10 @@ def test_dimensions_state_units_and_the_scale_of_a_typical_value() -> None:
     assert (damping.scale, damping.per) == ("effort", "flow")
     assert (DIMENSIONS["ratio"].scale, DIMENSIONS["ratio"].per) == (None, None)
     assert set(DIMENSIONS) >= {p.dimension for kind in tl.kinds() for p in tl.system_info(kind).parameters}
+
+
+@pytest.mark.parametrize("kind", tl.kinds())
+def test_an_effect_offers_the_class_of_its_law(kind: str) -> None:
+    for effect in tl.system_info(kind).effects:
+        assert effect.law is getattr(getattr(tl, effect.group), effect.law.__name__)
+        assert (effect.law.name, effect.law.equation) == (effect.effect, effect.equation)

@@ -170,7 +170,7 @@ def test_a_wrong_type_is_a_parameter_error(make: Any, message: str) -> None:
 
 
 def test_a_stiffness_that_no_step_resolves_ends_with_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tendonlab.simulation.system.MAX_ATTEMPTS", 1000)
+    monkeypatch.setattr("tendonlab.simulation.prepare.MAX_ATTEMPTS", 1000)
     rig = tl.load(bundled())
     stiff = rig.system().with_parameters({"cable_stiffness": 1e15})
     record = replace(rig.experiments[0], data=rig.experiments[0].data.iloc[:10])

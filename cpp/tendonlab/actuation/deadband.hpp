@@ -13,7 +13,7 @@ struct Deadband {
   static constexpr std::string_view name = "deadband", noun = "deadband", source = "dead zone of a drive",
                                     equation = "0 where |u| <= w, u - w sgn(u) beyond",
                                     summary = "actuation deadband: a small command has no effect";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T half_width;
 
   static constexpr auto parameters() {

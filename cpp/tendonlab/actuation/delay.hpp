@@ -11,7 +11,7 @@ template <class T>
 struct Delay {
   static constexpr std::string_view name = "delay", noun = "delay", source = "S2 fig. 12", equation = "u(t - d)",
                                     summary = "actuation delay: the command takes effect later";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T late;
 
   static constexpr auto parameters() {

@@ -13,7 +13,7 @@ struct GainError {
                                     equation = "(1 + e) u",
                                     summary =
                                         "actuation gain error: the effort differs from command times torque constant";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T error;
 
   static constexpr auto parameters() {

@@ -12,7 +12,7 @@ struct Offset {
   static constexpr std::string_view name = "offset", noun = "constant offset", source = "EMPS benchmark, first model",
                                     equation = "u + u_0",
                                     summary = "actuation offset: an effort that is there at zero command";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T offset;
 
   static constexpr auto parameters() {

@@ -11,6 +11,7 @@ void bind_tables(py::module_& module);
 void bind_laws(py::module_& module);
 void bind_pair(py::module_& module);
 void bind_systems(py::module_& module);
+void bind_batch(py::module_& module);
 void bind_routing(py::module_& module);
 void bind_identify(py::module_& module);
 

@@ -12,7 +12,7 @@ Configuration make_configuration(const Model& of, const std::vector<double>& val
     throw ParameterError(sentence(active.size(), " flags: ", info.kind, " has ", info.effects.size(), " effects"));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& p = info.parameters[i];
-    require_within(p.name, values[i], p.lower, p.upper, "");
+    require_within(p.name, values[i], p.lower, p.upper);
   }
   return {values, active};
 }

@@ -2,6 +2,7 @@
 
 #include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/bindings/convert.hpp"
+#include "tendonlab/bindings/record.hpp"
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/identify/fit.hpp"
 
@@ -162,31 +163,19 @@ void bind_problem(py::module_& module) {
            py::arg("scatter") = std::vector<std::pair<std::vector<std::size_t>, double>>())
       .def(
           "rows", [](const Task& task) { return task.whitening->rows(); }, "Number of its residuals.");
-  py::class_<Free>(
+  bind_record<Free>(
       module, "Free",
       "A fitted parameter: coordinate x = log(value / scale) or value / scale; start, lower, upper are values;\n"
-      "mean and sd of the normal prior belong to x (sd infinite: no prior).")
+      "mean and sd of the normal prior belong to x (sd infinite: no prior).",
+      {field("name", &Free::name, "Name of the parameter."),
+       field("index", &Free::index, "Its place in the table of the system."),
+       field("log", &Free::log, "Is its coordinate a logarithm?"),
+       field("scale", &Free::scale, "Unit of the coordinate."), field("start", &Free::start, "Value at the start."),
+       field("mean", &Free::mean, "Mean of the prior."), field("sd", &Free::sd, "Standard deviation of the prior."),
+       field("lower", &Free::lower, "Smallest value."), field("upper", &Free::upper, "Largest value.")})
       .def(py::init(&make_free), py::kw_only(), py::arg("name"), py::arg("index"), py::arg("log"), py::arg("scale"),
            py::arg("start"), py::arg("mean") = 0.0, py::arg("sd") = inf, py::arg("lower") = -inf,
            py::arg("upper") = inf)
-      .def_readonly("name", &Free::name)
-      .def_readonly("index", &Free::index)
-      .def_readonly("log", &Free::log)
-      .def_readonly("scale", &Free::scale)
-      .def_readonly("start", &Free::start)
-      .def_readonly("mean", &Free::mean)
-      .def_readonly("sd", &Free::sd)
-      .def_readonly("lower", &Free::lower)
-      .def_readonly("upper", &Free::upper)
-      .def(py::pickle(
-          [](const Free& f) {
-            return py::make_tuple(f.name, f.index, f.log, f.scale, f.start, f.mean, f.sd, f.lower, f.upper);
-          },
-          [](const py::tuple& f) {
-            return make_free(f[0].cast<std::string>(), f[1].cast<std::size_t>(), f[2].cast<bool>(), f[3].cast<double>(),
-                             f[4].cast<double>(), f[5].cast<double>(), f[6].cast<double>(), f[7].cast<double>(),
-                             f[8].cast<double>());
-          }))
       .def("value", &Free::value, py::arg("x"), "Value at the coordinate x, within the bounds.")
       .def("started", &Free::started, py::arg("value"),
            "The same, started at the value inside the bounds that is nearest; a logarithm starts above 0.")

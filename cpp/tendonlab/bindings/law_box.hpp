@@ -10,7 +10,7 @@ namespace tendonlab::bindings {
 using Numbers = std::vector<double>;
 
 /// A law with its numbers. It answers in its own roles, and 0 in others. `port`: one number per `LawFacts::fields`;
-/// `moving`: velocity, deflection, dry friction level, load; `passing`: signal, acceleration.
+/// `moving`: velocity, deflection, dry friction level, load; `samples`: the fields of each sample of a signal.
 class LawBox {
  public:
   virtual ~LawBox() = default;
@@ -21,15 +21,15 @@ class LawBox {
   virtual Numbers motion(const Numbers& port) const = 0;
   virtual double state_rate(const Numbers& moving) const = 0;
   virtual double state_force(const Numbers& moving) const = 0;
-  virtual double apply(const Numbers& passing) const = 0;
+  /// The signal behind the law; `dt`: time since the sample before, which only a law that keeps a state sees.
+  virtual Numbers pass(const std::vector<Numbers>& samples, const Numbers& dt) const = 0;
   virtual double lateness() const = 0;
-  virtual Numbers output(Numbers effort, double level) const = 0;
 };
 
 /// What a law states about itself, and how it is made.
 struct LawFacts : systems::LawFacts {
-  bool delays;
-  std::vector<std::string> fields;  ///< of the port that the law sees
+  bool delays, keeps_state;
+  std::vector<std::string> fields;  ///< of the port or signal that the law sees
   std::vector<ParameterInfo> parameters;
   std::unique_ptr<const LawBox> (*make)(const Numbers& values);
 
@@ -39,14 +39,18 @@ struct LawFacts : systems::LawFacts {
 inline double sign_between(double above, double below) {
   return static_cast<double>((above > 0) - (below < 0));
 }
-/// The port that a law sees: Sliding, or one of its own with more fields.
+/// What a law sees: Sliding or Passing, or a port or signal of its own with more fields.
 template <class L, class = void>
 struct PortOf {
-  using type = Sliding<double>;
+  using type = std::conditional_t<(L::roles & role::signal) != 0, Passing<double>, Sliding<double>>;
 };
 template <class L>
 struct PortOf<L, std::void_t<typename L::template Port<double>>> {
   using type = typename L::template Port<double>;
+};
+template <class L>
+struct PortOf<L, std::void_t<typename L::template Signal<double>>> {
+  using type = typename L::template Signal<double>;
 };
 
 template <class L>
@@ -104,31 +108,33 @@ class BoxOf final : public LawBox {
     }
     return static_cast<void>(moving), sum;
   }
-  double apply(const Numbers& passing) const override {
-    if constexpr (acts_at_once<L>) return law.apply(Passing<double>{passing[0], passing[1]});
-    return passing[0];
+  Numbers pass(const std::vector<Numbers>& samples, const Numbers& dt) const override {
+    Numbers behind;
+    if constexpr (plays(role::signal) && !delays_signal<L>) {
+      typename StateOf<L, double>::type state{};
+      for (const Numbers& sample : samples) {
+        Port at = filled(sample);
+        if constexpr (keeps_state<L>) at.dt = dt[behind.size()];
+        behind.push_back(signal_behind(law, at, state));
+      }
+    }
+    return static_cast<void>(samples), static_cast<void>(dt), behind;
   }
   double lateness() const override {
     if constexpr (delays_signal<L>) return law.lateness();
     return 0.0;
   }
-  Numbers output(Numbers effort, double level) const override {
-    if constexpr (plays(role::output)) {
-      typename L::template State<double> state{effort.empty() ? 0.0 : effort[0], effort.empty() ? 0.0 : effort[0]};
-      for (double& value : effort) {
-        state = law.next(state, value, level);
-        value = law.output(value, state);
-      }
-    }
-    return static_cast<void>(level), effort;
-  }
 
  private:
-  /// The port with the modes that a stepper would hold: they follow from the motion, 0 at rest.
-  Port port_of(const Numbers& fields) const {
+  static Port filled(const Numbers& fields) {
     Port at;
     auto next = fields.begin();
     at.for_each_field([&](std::string_view, unsigned, auto access) { access(at) = *next++; });
+    return at;
+  }
+  /// The port with the modes that a stepper would hold: they follow from the motion, 0 at rest.
+  Port port_of(const Numbers& fields) const {
+    Port at = filled(fields);
     at.direction = sign_between(at.velocity, at.velocity);
     if constexpr (opens_gap<L>) at.side = sign_between(at.position - law.half_gap(), at.position + law.half_gap());
     return at;
@@ -147,7 +153,7 @@ std::unique_ptr<const LawBox> make_box(const Numbers& values) {
 }
 template <class L>
 LawFacts facts_of() {
-  LawFacts facts{systems::law_facts<L>(), delays_signal<L>, {}, {}, &make_box<L>};
+  LawFacts facts{systems::law_facts<L>(), delays_signal<L>, keeps_state<L>, {}, {}, &make_box<L>};
   PortOf<L>::type::for_each_field([&](std::string_view name, unsigned, auto) { facts.fields.emplace_back(name); });
   for (const systems::Row& row : systems::rows<L>())
     facts.parameters.push_back(systems::parameter_info(row, std::string(row.name), {}, std::string(L::name)));

@@ -1,13 +1,9 @@
 // Every law of the library as a Python class, made from its facts and its roles: a new law needs no line here.
 #include <functional>
 
-#include "tendonlab/actuation/all.hpp"
 #include "tendonlab/bindings/columns.hpp"
 #include "tendonlab/bindings/law_box.hpp"
-#include "tendonlab/friction/all.hpp"
-#include "tendonlab/loading/all.hpp"
-#include "tendonlab/sensing/all.hpp"
-#include "tendonlab/transmission/all.hpp"
+#include "tendonlab/bindings/words.hpp"
 
 namespace tendonlab::bindings {
 namespace {
@@ -18,16 +14,6 @@ struct Law {
   Numbers values;
   std::unique_ptr<const LawBox> box = facts->make(values);
 };
-
-std::string pascal_case(std::string_view name) {
-  std::string out;
-  bool starts = true;
-  for (const char c : name) {
-    if (c != '_') out += starts && 'a' <= c && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    starts = c == '_';
-  }
-  return out;
-}
 
 // Construction, and what follows from the numbers of a law
 
@@ -49,7 +35,7 @@ double number_of(const ParameterInfo& p, const py::object& given) {
     throw ParameterError(sentence(p.name, " = ", shown(given), ": expected a number, ", both_units(p.dimension)));
   }
 }
-Law make(const py::capsule& facts, const py::dict& given) {
+Law make_law(const py::capsule& facts, const py::dict& given) {
   const LawFacts* of = facts.get_pointer<const LawFacts>();
   refuse_unknown(*of, given);
   Numbers values;
@@ -130,21 +116,35 @@ py::dict motion(const Law& of, const Arguments& fields, const py::dict& given) {
   for (std::size_t k = 0; k < fields.size(); ++k) out[fields[k].name.c_str()] = columns.shaped(std::move(behind[k]));
   return out;
 }
-py::object output(const Law& of, const py::dict& given) {
-  const Array effort = Columns::numbers("effort", given["effort"]), level = Columns::numbers("level", given["level"]);
-  if (level.size() != 1) throw ParameterError("level = " + shown(given["level"]) + ": expected a number");
-  return to_array(of.box->output({effort.data(), effort.data() + effort.size()}, level.data()[0]),
-                  {effort.shape(), effort.shape() + effort.ndim()});
+Array instants(const py::dict& given) {
+  if (!given.contains("time") || given["time"].is_none())
+    throw ParameterError("time is missing: expected the instants of the signal, s");
+  return Columns::numbers("time", given["time"]);
 }
 /// A delay shows the signal as it was, straight between its samples, and the first value before them.
-py::object apply(const Law& of, const py::dict& given) {
-  if (!of.facts->delays) return sampled(of, &LawBox::apply, Columns({{"signal"}, {"acceleration"}}, given));
+py::object delayed(const Law& of, const py::dict& given) {
   const Array signal = Columns::numbers("signal", given["signal"]);
   if (of.box->lateness() == 0) return signal;
-  if (!given.contains("time") || given["time"].is_none())
-    throw ParameterError("time is missing: expected the instants of the signal, s, to delay it");
-  const Array time = Columns::numbers("time", given["time"]);
+  const Array time = instants(given);
   return py::module_::import("numpy").attr("interp")(time.attr("__sub__")(of.box->lateness()), time, signal);
+}
+/// Time between the samples of a signal, 0 at the first.
+Numbers steps(const Array& time, std::size_t samples) {
+  if (time.ndim() != 1 || static_cast<std::size_t>(time.size()) != samples)
+    throw ParameterError(sentence("time with ", time.size(), " instants: expected one for each of ", samples));
+  Numbers dt(samples);
+  for (std::size_t k = 1; k < samples; ++k)
+    if (dt[k] = time.data()[k] - time.data()[k - 1]; !(dt[k] > 0))
+      throw ParameterError(sentence("time[", k, "] = ", time.data()[k], " s: expected more than the one before"));
+  return dt;
+}
+py::object apply(const Law& of, const Arguments& fields, const py::dict& given) {
+  if (of.facts->delays) return delayed(of, given);
+  const Columns columns(fields, given);
+  std::vector<Numbers> samples(columns.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) columns.read(i, samples[i]);
+  const Numbers dt = of.facts->keeps_state ? steps(instants(given), samples.size()) : Numbers();
+  return columns.shaped(of.box->pass(samples, dt));
 }
 
 std::string over_ports(const std::string& does) {
@@ -184,24 +184,22 @@ void add_motion(const LawFacts& of, const Arguments& port, std::vector<Method>& 
        [port](const Law& law, const py::dict& given) -> py::object { return motion(law, port, given)["position"]; },
        "The stretch, rad or m, that is left of `position` for the laws behind it."});
 }
-void add_effort(const LawFacts& of, const Arguments& port, std::vector<Method>& all) {
+void add_gain(const LawFacts& of, const Arguments& port, std::vector<Method>& all) {
   if (of.plays(role::gain))
     all.push_back(over(port, "gain", &LawBox::gain,
                        over_ports("The factor by which it multiplies the effort that its element passes on, 1.")));
-  if (of.plays(role::output))
-    all.push_back({"output",
-                   {{"effort", true, true}, {"level", true}},
-                   &output,
-                   "The effort behind the law at samples of the `effort` without friction, N*m or N, shape (n,), where "
-                   "the dry friction level is `level`; it begins at the first sample."});
 }
-void add_signal(const LawFacts& of, std::vector<Method>& all) {
-  if (of.roles != 0) return;
-  all.push_back({"apply",
-                 {{"signal", true, true}, {"time", false, false, "None"}, {"acceleration"}},
-                 &apply,
-                 "The signal behind this law, shape of `signal`. A delay needs `time`, s, shape (n,), for signals of "
-                 "shape (n,); an inertia needs the `acceleration` of its drive, rad/s^2 or m/s^2."});
+void add_signal(const LawFacts& of, const Arguments& fields, std::vector<Method>& all) {
+  if (!of.plays(role::signal)) return;
+  Arguments arguments = fields;
+  arguments.front() = {"signal", true, true};
+  std::string does = "The signal behind this law, shape of `signal`; its arguments broadcast.";
+  if (of.delays || of.keeps_state) {
+    arguments.push_back({"time", false, false, "None"});
+    does += " It needs `time`, s, shape (n,), for signals of shape (n,).";
+  }
+  all.push_back({"apply", arguments,
+                 [fields](const Law& law, const py::dict& given) { return apply(law, fields, given); }, does});
 }
 std::vector<Method> methods_of(const LawFacts& of) {
   Arguments port;
@@ -210,8 +208,8 @@ std::vector<Method> methods_of(const LawFacts& of) {
   add_friction(of, port, all);
   add_memory(of, all);
   add_motion(of, port, all);
-  add_effort(of, port, all);
-  add_signal(of, all);
+  add_gain(of, port, all);
+  add_signal(of, port, all);
   return all;
 }
 
@@ -230,12 +228,11 @@ std::string describe(const LawFacts& of) {
 py::tuple roles_of(const LawFacts& of) {
   constexpr std::pair<unsigned, const char*> words[] = {
       {role::motion, "motion"}, {role::level, "level"}, {role::factor, "factor"}, {role::force, "force"},
-      {role::memory, "memory"}, {role::gain, "gain"},   {role::output, "output"}};
+      {role::memory, "memory"}, {role::gain, "gain"},   {role::signal, "signal"}};
   py::list names;
   for (const auto& [bit, word] : words)
     if (of.plays(bit)) names.append(word);
   if (of.roles == role::refines) names.append("refines");
-  if (of.roles == 0) names.append("signal");
   return py::tuple(names);
 }
 /// What the class of a law holds before its methods. Without slots its instances take no attributes.
@@ -292,7 +289,7 @@ py::object class_of(const LawFacts& of, const py::object& base, const py::module
 }
 py::object bind_base(py::module_& module) {
   return py::class_<Law>(module, "Law", "What all law classes share.")
-      .def(py::init(&make))
+      .def(py::init(&make_law))
       .def("__repr__", &represent)
       .def("__eq__", &equal)
       .def("__hash__", &hash)
@@ -305,22 +302,14 @@ void bind_laws(py::module_& module) {
   options.disable_function_signatures();  // those of pybind11 say nothing about keywords
   const py::object base = bind_base(module);
   py::list registered;
-  const auto add = [&](const char* group, const char* doc, const std::vector<LawFacts (*)()>& laws) {
+  for_each_group([&](const char* group, const char* doc, auto list) {
     py::module_ inside = module.def_submodule(group, doc);
-    for (const auto make_facts : laws) {
+    for (const auto make_facts : facts_of_all<decltype(list)>()) {
       const auto& law = *new LawFacts(make_facts());
       registered.append(py::make_tuple(group, law.name));
       inside.attr(pascal_case(law.name).c_str()) = class_of(law, base, inside);
     }
-  };
-  add("friction", "Friction laws.", facts_of_all<friction::Every>());
-  add("transmission", "Laws of cables and gears.", facts_of_all<transmission::Every>());
-  add("sheath", "Laws of pretensioned tendons in sheaths.",
-      facts_of_all<Joined<transmission::Sheath, transmission::Tendons>::type>());
-  add("ends", "Laws of the end sections of cables.", facts_of_all<transmission::Ends>());
-  add("loading", "Laws of the external load of the joint.", facts_of_all<loading::Every>());
-  add("actuation", "Laws of actuators.", facts_of_all<actuation::Every>());
-  add("sensing", "Laws of sensors.", facts_of_all<sensing::All>());
+  });
   options.enable_function_signatures();
   module.def(
       "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");

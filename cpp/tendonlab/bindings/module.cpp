@@ -35,6 +35,7 @@ PYBIND11_MODULE(_core, module) {
   tendonlab::bindings::bind_laws(module);
   tendonlab::bindings::bind_pair(module);
   tendonlab::bindings::bind_systems(module);
+  tendonlab::bindings::bind_batch(module);
   tendonlab::bindings::bind_routing(module);
   tendonlab::bindings::bind_identify(module);
 }

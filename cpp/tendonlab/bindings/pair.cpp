@@ -1,6 +1,5 @@
 #include "tendonlab/bindings/bind.hpp"
-#include "tendonlab/mechanics/sheaths.hpp"
-#include "tendonlab/transmission/sheath_capstan.hpp"
+#include "tendonlab/transmission/measured_sheaths.hpp"
 
 namespace tendonlab::bindings {
 namespace {
@@ -26,14 +25,13 @@ Sheaths make_sheaths(Numbers arc_length, Numbers turning, double pretension, dou
 /// `friction`: mu_d, mu_s, v_s, v_threshold, s_v in the unit of velocity.
 py::dict transmit(const Sheaths& of, const Numbers& torque, const Numbers& velocity,
                   const std::array<double, 5>& friction, double periods, double start, double release) {
-  require_within("release", release, 0.0, 1.0, "1");
+  require_within("release", release, 0.0, 1.0);
   if (torque.size() != velocity.size())
     throw ParameterError(sentence("input_torque and velocity with ", torque.size(), " and ", velocity.size(),
                                   " numbers: expected as many of both, in one row"));
   const transmission::SheathCapstan<double> capstan{friction[0], friction[1], friction[2]};
-  const auto coefficient = [&](double v) { return capstan.coefficient(Sliding<double>{v}); };
-  auto all =
-      mechanics::transmit(of, torque, velocity, coefficient, {{friction[3], friction[4]}, periods, release}, start);
+  const transmission::VelocityGate<double> gate{friction[3], friction[4], 1.0};
+  auto all = transmission::transmit(of, torque, velocity, capstan, {gate, periods, release}, start);
   const auto samples = static_cast<py::ssize_t>(torque.size());
   return py::dict(py::arg("output_torque") = to_array(std::move(all.output), {samples}),
                   py::arg("gate") = to_array(std::move(all.open), {samples}),

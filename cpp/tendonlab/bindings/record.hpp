@@ -1,6 +1,6 @@
 #pragma once
 // A struct of facts as a read-only Python class: attributes, repr, ==, hash and pickle from one list of its fields.
-#include <optional>
+#include <functional>
 #include <set>
 
 #include "tendonlab/bindings/words.hpp"
@@ -26,57 +26,66 @@ Value from_python(const py::handle& value) {
     return value.cast<Value>();
 }
 
-/// One fact of a record. The value `absent` is None in Python.
-template <class Record, class Value>
+/// One fact of a record, whatever its type: each record compiles its methods once, not once per fact.
+template <class Record>
 struct Field {
-  const char* name;
-  Value Record::*member;
-  const char* meaning;
-  std::optional<Value> absent = {};
-
-  py::object get(const Record& of) const {
-    const Value& value = of.*member;
-    return absent && value == *absent ? py::object(py::none()) : to_python(value);
-  }
-  void set(Record& of, const py::handle& value) const {
-    of.*member = value.is_none() ? *absent : from_python<Value>(value);
-  }
+  const char *name, *meaning;
+  std::function<py::object(const Record&)> get;
+  std::function<void(Record&, const py::handle&)> set;
 };
 template <class Record, class Value>
-Field<Record, Value> field(const char* name, Value Record::*member, const char* meaning) {
-  return {name, member, meaning, {}};
+Field<Record> field(const char* name, Value Record::*member, const char* meaning) {
+  return {name, meaning, [member](const Record& of) { return to_python(of.*member); },
+          [member](Record& of, const py::handle& value) { of.*member = from_python<Value>(value); }};
 }
+/// The value `absent` is None in Python.
 template <class Record, class Value, class Absent>
-Field<Record, Value> field(const char* name, Value Record::*member, const char* meaning, Absent absent) {
-  return {name, member, meaning, Value(absent)};
+Field<Record> field(const char* name, Value Record::*member, const char* meaning, Absent absent) {
+  Field<Record> present = field(name, member, meaning);
+  return {name, meaning,
+          [member, absent, get = present.get](const Record& of) {
+            return of.*member == Value(absent) ? py::object(py::none()) : get(of);
+          },
+          [member, absent, set = present.set](Record& of, const py::handle& value) {
+            if (value.is_none())
+              of.*member = Value(absent);
+            else
+              set(of, value);
+          }};
 }
 
-template <class Record, class... Values>
-py::class_<Record> bind_record(py::module_& module, const char* name, const char* doc,
-                               const Field<Record, Values>&... fields) {
-  const auto values = [fields...](const Record& of) { return py::make_tuple(fields.get(of)...); };
+template <class Record>
+using Fields = std::vector<Field<Record>>;
+template <class Record>
+py::tuple values_of(const Fields<Record>& fields, const Record& of) {
+  py::tuple all(fields.size());
+  for (std::size_t i = 0; i < fields.size(); ++i) all[i] = fields[i].get(of);
+  return all;
+}
+template <class Record>
+std::string represent(const Fields<Record>& fields, const std::string& title, const Record& of) {
+  std::string inside;
+  for (const Field<Record>& one : fields)
+    inside +=
+        (inside.empty() ? "" : ", ") + std::string(one.name) + "=" + py::repr(one.get(of)).template cast<std::string>();
+  return title + "(" + inside + ")";
+}
+
+template <class Record>
+py::class_<Record> bind_record(py::module_& module, const char* name, const char* doc, const Fields<Record>& fields) {
   py::class_<Record> record(module, name, doc);
-  (record.def_property_readonly(
-       fields.name, [fields](const Record& of) { return fields.get(of); }, fields.meaning),
-   ...);
-  record
-      .def("__repr__",
-           [title = std::string(name), fields...](const Record& of) {
-             std::string inside;
-             ((inside += (inside.empty() ? "" : ", ") + std::string(fields.name) + "=" +
-                         py::repr(fields.get(of)).template cast<std::string>()),
-              ...);
-             return title + "(" + inside + ")";
-           })
+  for (const Field<Record>& one : fields)
+    record.def_property_readonly(one.name, py::cpp_function(one.get), one.meaning);
+  const auto values = [fields](const Record& of) { return values_of(fields, of); };
+  record.def("__repr__", [fields, title = std::string(name)](const Record& of) { return represent(fields, title, of); })
       .def("__eq__",
            [values](const Record& of, const py::object& other) {
              return py::isinstance<Record>(other) && values(of).equal(values(other.cast<const Record&>()));
            })
       .def("__hash__", [values](const Record& of) { return py::hash(values(of)); })
-      .def(py::pickle(values, [fields...](const py::tuple& state) {
+      .def(py::pickle(values, [fields](const py::tuple& state) {
         Record of{};
-        std::size_t next = 0;
-        (fields.set(of, state[next++]), ...);
+        for (std::size_t i = 0; i < fields.size(); ++i) fields[i].set(of, state[i]);
         return of;
       }));
   return record;

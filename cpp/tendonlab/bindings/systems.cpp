@@ -139,9 +139,9 @@ void bind_experiments(py::module_& module) {
       .def_readonly("velocity", &Experiment::velocity);
   py::class_<integrate::Settings>(module, "Settings", "Tolerance and scales of the integration.")
       .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts, bool ports) {
-             require_within("tolerance", tolerance, 1e-14, 0.1, "1");
-             require_within("position_scale", position_scale, 1e-300, 1e300, "");
-             require_within("velocity_scale", velocity_scale, 1e-300, 1e300, "");
+             require_within("tolerance", tolerance, 1e-14, 0.1);
+             require_within("position_scale", position_scale, 1e-300, 1e300);
+             require_within("velocity_scale", velocity_scale, 1e-300, 1e300);
              return integrate::Settings{tolerance, position_scale, velocity_scale, max_attempts, ports};
            }),
            py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,

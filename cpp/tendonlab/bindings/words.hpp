@@ -23,6 +23,19 @@ constexpr const char* word(Scale scale) {
 }
 }  // namespace tendonlab
 
+namespace tendonlab::bindings {
+/// The class of a law, by its name: "load_dependence" is LoadDependence.
+inline std::string pascal_case(std::string_view name) {
+  std::string out;
+  bool starts = true;
+  for (const char c : name) {
+    if (c != '_') out += starts && 'a' <= c && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    starts = c == '_';
+  }
+  return out;
+}
+}  // namespace tendonlab::bindings
+
 namespace pybind11::detail {
 /// An enumeration whose values count from 0 and have a `word` each.
 template <class Enum>

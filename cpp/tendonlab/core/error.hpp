@@ -19,8 +19,11 @@ std::string sentence(const Part&... part) {
   (text << ... << part);
   return text.str();
 }
-inline void require_within(std::string_view name, double value, double lower, double upper, std::string_view unit) {
+/// `unit`: not shown where there is none, or "1", that of a ratio.
+inline void require_within(std::string_view name, double value, double lower, double upper,
+                           std::string_view unit = {}) {
   if (std::isfinite(value) && lower <= value && value <= upper) return;  // NaN and infinity fail here too
-  throw ParameterError(sentence(name, " = ", value, ": expected a value in [", lower, ", ", upper, "] ", unit));
+  const std::string shown = unit.empty() || unit == "1" ? "" : sentence(" ", unit);
+  throw ParameterError(sentence(name, " = ", value, ": expected a value in [", lower, ", ", upper, "]", shown));
 }
 }  // namespace tendonlab

@@ -54,10 +54,10 @@ Port<D> with_scalar(const Port<S>& of) {
 /// Every law states its `name` (in code), its `noun` (what reports call the effect, without the place: "Stribeck
 /// friction"), `equation`, `source` and `summary`.
 
-/// How laws combine in a slot; a law may have several roles. motion: changes what the later laws see; level: adds to
-/// the dry friction; factor: multiplies it; force: adds; memory: has a state with a rate; refines: shapes the dry
-/// friction of other laws and makes none itself; whole: all the friction of its slot, so no other law joins it; gain:
-/// multiplies the effort that the element passes on; output: changes that effort from sample to sample, with a state.
+/// How laws combine in a slot or chain; a law may have several roles. motion: changes what the later laws see; level:
+/// adds to the dry friction; factor: multiplies it; force: adds; memory: has a state with a rate; refines: shapes the
+/// dry friction of other laws and makes none itself; whole: all the friction of its slot, so no other law joins it;
+/// gain: multiplies the effort that the element passes on; signal: acts on a signal, in a chain (core/chain.hpp).
 namespace role {
 enum : unsigned {
   motion = 1,
@@ -68,7 +68,7 @@ enum : unsigned {
   refines = 32,
   whole = 64,
   gain = 128,
-  output = 256
+  signal = 256
 };
 }
 

@@ -46,6 +46,7 @@ struct Slot {
     List::for_each([&](auto* law) { n += opens_gap<std::decay_t<decltype(*law)>>; });
     return n;
   }
+  static_assert(count<role::signal>() == 0, "a law of a signal in a slot: its place is a chain");
   static_assert(gaps() <= 1, "two gaps in a slot need a mode each");
   static constexpr int states = count<role::memory>();
   static_assert(states <= 1, "two memories in a slot need a state each");

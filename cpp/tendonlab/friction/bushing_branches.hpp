@@ -9,7 +9,8 @@ namespace tendonlab::friction {
 ///
 /// theta: signed wrap angle, rad. T: tension that `load` names, N. Each branch is continuous in theta. Half the sum of
 /// the directions is no friction but a tension that changes with theta; half their difference is, and sticks. A guide
-/// that inputs drive keeps at rest the direction of its last motion. a = b = 0 switches it off. No memory.
+/// that inputs drive keeps at rest the direction of its last motion. At a mirrored port the numbers i are swapped: its
+/// cable runs backwards where the cable by which they are stated runs forwards. a = b = 0 switches it off. No memory.
 template <class T>
 struct BushingBranches {
   static constexpr std::string_view name = "bushing_branches", noun = "direction- and side-dependent friction",
@@ -18,6 +19,7 @@ struct BushingBranches {
                                     summary = "bushing: force of a cable by wrap angle, direction and side";
   static constexpr unsigned roles = role::force, sees = sees_wrap | sees_load | sees_direction;
   T a1, a2, b11, b12, b21, b22, c1, c2;
+  bool mirrored = false;  ///< is the port?
 
   static constexpr auto parameters() {
     using B = BushingBranches;
@@ -42,7 +44,8 @@ struct BushingBranches {
   template <class S>
   S force(const Sliding<S>& at) const {
     const S forwards = branch(at, a1, b11, b12, c1), backwards = branch(at, a2, b21, b22, c2);
-    return 0.5 * (forwards + backwards) + (0.5 * at.direction) * (forwards - backwards);
+    const double half = mirrored ? -0.5 : 0.5;
+    return 0.5 * (forwards + backwards) + (half * at.direction) * (forwards - backwards);
   }
 
  private:

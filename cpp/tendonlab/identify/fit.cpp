@@ -225,13 +225,13 @@ void require_sound(const Problem& problem) {
     if (free.index >= count)
       throw ParameterError(sentence("free index = ", free.index, ": expected less than ", count));
     const std::string& name = free.name;
-    require_within("scale of " + name, free.scale, 1e-300, 1e300, "");
+    require_within("scale of " + name, free.scale, 1e-300, 1e300);
     if (!(free.sd > 0)) throw ParameterError(sentence("prior sd of ", name, " = ", free.sd, ": expected more than 0"));
-    if (std::isfinite(free.sd)) require_within("prior mean of " + name, free.mean, -1e300, 1e300, "");
+    if (std::isfinite(free.sd)) require_within("prior mean of " + name, free.mean, -1e300, 1e300);
     if (!(free.lower < free.upper))
       throw ParameterError(
           sentence("bounds of ", name, " = [", free.lower, ", ", free.upper, "]: expected lower < upper"));
-    require_within("start of " + name, free.start, free.lower, free.upper, "");
+    require_within("start of " + name, free.start, free.lower, free.upper);
     if (free.log && !(free.start > 0))
       throw ParameterError(
           sentence("start of ", name, " = ", free.start, ": expected more than 0 for a log coordinate"));
@@ -363,8 +363,8 @@ Result linearise(const Problem& problem) {
 
 Result fit(const Problem& problem, const Options& options) {
   require_sound(problem);
-  require_within("max_iterations", options.max_iterations, 0, 1e6, "");
-  require_within("tolerance", options.tolerance, 1e-15, 1.0, "");
+  require_within("max_iterations", options.max_iterations, 0, 1e6);
+  require_within("tolerance", options.tolerance, 1e-15, 1.0);
   Predictions predictions = predictions_of(problem);
   Vector x = start_of_free(problem);
   Coordinates z = start_of_states(problem, predictions);

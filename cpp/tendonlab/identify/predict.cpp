@@ -21,16 +21,16 @@ void require_sound(const Problem& problem, const Task& task) {
       if (index >= info.parameters.size())
         throw ParameterError(
             sentence("condition on parameter ", index, ": expected less than ", info.parameters.size()));
-      require_within("condition on " + info.parameters[index].name, value, -1e300, 1e300, "");
+      require_within("condition on " + info.parameters[index].name, value, -1e300, 1e300);
     }
   for (const FreeState& state : task.initial) {
-    require_within("sd of an initial state", state.sd, 1e-300, 1e300, "");
+    require_within("sd of an initial state", state.sd, 1e-300, 1e300);
     if (state.seed.of == Of::parameter || state.seed.index < 0 || state.seed.index >= info.dof)
       throw ParameterError(sentence("initial state ", state.seed.index, ": expected a position or velocity of one of ",
                                     info.dof, " degrees of freedom"));
   }
   for (const Scatter& group : task.scatter) {
-    require_within("sd of scatter", group.sd, 1e-300, 10.0, "");
+    require_within("sd of scatter", group.sd, 1e-300, 10.0);
     for (const std::size_t index : group.parameters)
       if (index >= info.parameters.size())
         throw ParameterError(sentence("scatter of parameter ", index, ": expected less than ", info.parameters.size()));
@@ -91,7 +91,7 @@ Eigen::VectorXd Prediction::coordinates(const std::vector<double>& states) const
     throw ParameterError(sentence(states.size(), " initial values: expected ", z.size(),
                                   ", the states and factors that the task frees"));
   for (std::size_t k = 0; k < states.size(); ++k) {
-    require_within("initial value", states[k], -1e300, 1e300, "");
+    require_within("initial value", states[k], -1e300, 1e300);
     z(static_cast<Eigen::Index>(k)) = (states[k] - prior_mean(k)) / prior_sd(k);
   }
   return z;
@@ -115,7 +115,7 @@ Configuration Prediction::configuration_at(const Eigen::VectorXd& x, const Eigen
   const auto& parameters = problem.model.info().parameters;
   for (std::size_t i = 0; i < with.values.size(); ++i) {
     if (!task.scatter.empty()) with.values[i] *= factor(i, z);
-    require_within(parameters[i].name, with.values[i], parameters[i].lower, parameters[i].upper, "");
+    require_within(parameters[i].name, with.values[i], parameters[i].lower, parameters[i].upper);
   }
   return with;
 }

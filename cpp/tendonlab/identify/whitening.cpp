@@ -48,7 +48,7 @@ void Whitening::find_effect(const Eigen::Ref<const Eigen::MatrixXd>& directions,
   if (directions.cols() != k || (k > 0 && directions.rows() != num_rows))
     throw ParameterError(sentence("directions of shape (", directions.rows(), ", ", directions.cols(), "): expected (",
                                   num_rows, ", ", k, "), a column for each spread"));
-  for (const double tau : spread) require_within("spread", tau, 0.0, std::numeric_limits<double>::max(), "");
+  for (const double tau : spread) require_within("spread", tau, 0.0, std::numeric_limits<double>::max());
   if (k == 0) return;
   effect = RandomEffect(directions * Eigen::Map<const Eigen::VectorXd>(spread.data(), k).asDiagonal());
 }

@@ -45,11 +45,10 @@ class Sampling {
       : system(of), time(experiment.time), out(into), column(first_column), width(columns) {
     std::vector<std::array<T, channels>> all(time.size());
     SampleInputs<T> inputs(experiment);
-    systems::Memory<T, static_cast<std::size_t>(memories<System>), System::carried> memory;
+    systems::Memory<T, static_cast<std::size_t>(memories<System>), typename System::Carried> memory;
     for (std::size_t k = 0; k < time.size(); ++k) {
       inputs.move_to(k);
       const auto sample = system.evaluate(inputs, memory);
-      memory.begun = true;
       all[k] = sample.output;
       if (shows) write_ports(k, sample);
     }

@@ -13,7 +13,7 @@ struct Offset {
   static constexpr std::string_view name = "offset", noun = "constant disturbance",
                                     source = "constant term of the equation of motion", equation = "F + F_0",
                                     summary = "load offset: a constant disturbance on the joint";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T offset;
 
   static constexpr auto parameters() {

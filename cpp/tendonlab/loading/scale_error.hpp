@@ -14,7 +14,7 @@ struct ScaleError {
                                     summary =
                                         "load scale error: the known load is wrong by a factor, as with a wrong "
                                         "mass";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T error;
 
   static constexpr auto parameters() {

@@ -14,10 +14,22 @@ constexpr std::size_t first_port(std::size_t i) {
   while (System::ports[first].element != System::ports[i].element) ++first;
   return first;
 }
-/// Gives every port of an element the laws of its first.
+template <class Law, class = void>
+inline constexpr bool asks_if_mirrored = false;
+template <class Law>
+inline constexpr bool asks_if_mirrored<Law, std::void_t<decltype(&Law::mirrored)>> = true;
+
+/// Gives every port of an element the laws of its first; they learn whether their port is mirrored.
 template <class System, std::size_t... i>
 void share_slots(System& system, std::index_sequence<i...>) {
   ((std::get<i>(system.slot) = std::get<first_port<System>(i)>(system.slot)), ...);
+  const auto orient = [](auto& law, [[maybe_unused]] const Port& port) {
+    if constexpr (asks_if_mirrored<std::decay_t<decltype(law)>>) law.mirrored = port.is_mirrored;
+  };
+  const auto place = [&](auto& laws, const Port& port) {
+    std::apply([&](auto&... law) { (orient(law, port), ...); }, laws);
+  };
+  (place(std::get<i>(system.slot).laws, System::ports[i]), ...);
 }
 
 /// Names of the places where laws sit, in the order of the walk.
@@ -25,7 +37,10 @@ template <class System>
 std::vector<std::string> place_names() {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < System::ports.size(); ++i)
-    if (first_port<System>(i) == i) names.emplace_back(System::ports[i].element);
+    if (first_port<System>(i) == i) {
+      names.emplace_back(System::ports[i].element);
+      if (System::ports[i].element == System::passing) names.emplace_back(System::passing);
+    }
   if constexpr (decltype(System::load)::size > 0) names.emplace_back("load");
   if constexpr (decltype(System::actuation)::size > 0) names.emplace_back("actuation");
   if constexpr (decltype(System::sensor)::value_type::size > 0)
@@ -40,7 +55,11 @@ void for_each_place(System& system, F&& f) {
   };
   std::size_t i = 0;
   const auto slot = [&](auto& of) {
-    if (first_port<System>(i) == i) f(of.laws, of.active);
+    if (first_port<System>(i) == i) {
+      f(of.laws, of.active);
+      if constexpr (!System::passing.empty())
+        if (System::ports[i].element == System::passing) place(system.passed);
+    }
     ++i;
   };
   std::apply([&](auto&... each) { (slot(each), ...); }, system.slot);

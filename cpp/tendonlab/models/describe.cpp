@@ -32,6 +32,7 @@ void Describe::add_own(const std::vector<Row>& parameters) {
 }
 
 void Describe::add_place(const std::string& name) {
+  if (element == name) return;  // the laws of the effort that an element passes on follow those of its slot
   element = name;
   made.info.elements.push_back({element, axis(), place_words(), acts_on()});
 }
@@ -41,6 +42,7 @@ void Describe::add_law(const LawFacts& law, const std::vector<Row>& parameters) 
   EffectInfo effect{name,
                     element,
                     std::string(law.name),
+                    std::string(law.group),
                     std::string(law.noun),
                     std::string(law.noun) + " " + place_words(),
                     std::string(law.equation),

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tendonlab/models/assemble.hpp"
+#include "tendonlab/models/groups.hpp"
 #include "tendonlab/models/model.hpp"
 
 namespace tendonlab {
@@ -25,7 +26,7 @@ struct Row {
 };
 /// A law as it states itself. `partner`: the law of the same element whose parameters of equal names are its own too.
 struct LawFacts {
-  std::string_view name, noun, equation, source, summary, partner;
+  std::string_view group, name, noun, equation, source, summary, partner;
   unsigned roles;
 };
 /// A system as it states itself.
@@ -75,12 +76,14 @@ struct PartnerOf {
   static constexpr std::string_view name = Law::name;
 };
 template <class Law>
-struct PartnerOf<Law, std::void_t<decltype(Law::shares_with)>> {
-  static constexpr std::string_view name = Law::shares_with;
+struct PartnerOf<Law, std::void_t<typename Law::Partner>> {
+  static constexpr std::string_view name = Law::Partner::name;
 };
 template <class Law>
 LawFacts law_facts() {
-  return {Law::name, Law::noun, Law::equation, Law::source, Law::summary, PartnerOf<Law>::name, Law::roles};
+  constexpr std::string_view group = group_of<Law>();
+  static_assert(!group.empty(), "a law that is in no group (models/groups.hpp)");
+  return {group, Law::name, Law::noun, Law::equation, Law::source, Law::summary, PartnerOf<Law>::name, Law::roles};
 }
 template <class Owner>
 std::vector<Row> rows() {
@@ -98,7 +101,7 @@ constexpr int states_of(const std::tuple<Slot...>*) {
 template <class System>
 constexpr bool is_steady() {
   if constexpr (System::sampled)
-    return states_of(static_cast<decltype(System::slot)*>(nullptr)) == 0 && System::carried == 0;
+    return states_of(static_cast<decltype(System::slot)*>(nullptr)) == 0 && std::is_empty_v<typename System::Carried>;
   else
     return false;
 }

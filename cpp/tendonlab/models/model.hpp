@@ -20,6 +20,7 @@ struct ParameterInfo {
 };
 struct EffectInfo {
   std::string name, element, effect;
+  std::string group;         ///< of its law (models/groups.hpp)
   std::string noun, phrase;  ///< "Stribeck friction", "Stribeck friction at the joint"
   std::string equation, source, summary;
   std::vector<std::string> parameters;

@@ -11,7 +11,7 @@ template <class T>
 struct Bias {
   static constexpr std::string_view name = "bias", noun = "bias", source = "S0, calibration of the load cells",
                                     equation = "y + y_0", summary = "sensor bias: a constant added to the reading";
-  static constexpr unsigned roles = 0, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal, sees = sees_nothing;
   T added;
 
   static constexpr auto parameters() {

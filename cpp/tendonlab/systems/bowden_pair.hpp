@@ -1,15 +1,14 @@
 #pragma once
-#include "tendonlab/mechanics/velocity_gate.hpp"
 #include "tendonlab/systems/sampled.hpp"
 
 namespace tendonlab::systems {
 /// Two pretensioned tendons in sheaths join a drive to a load, sample by sample (S3 eq. 18-21):
-///   target = K_in tau_in - friction(v),   tau_out[k] = h target + (1 - h) tau_out[k-1],
-///   h = tanh(s_v (v² - v_t²))/2 + 1/2   for a step of the 1 kHz control loop.
-/// K_in = r_out/r_in unless the sheath is bent unevenly. The sheath slides with the velocity of the drive, less the
-/// part that only stretches the cables (`cable:compliance`), and carries the torque of the output. The output before
-/// the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle (`sheath:presliding`) replaces the
-/// gate by its share. Axial stiffness and length cancel out of the torque of cables that do not stretch.
+///   target = K_in tau_in - friction(v),   tau_out[k] = h target + (1 - h) tau_out[k-1]
+/// h: transmission::VelocityGate. K_in = r_out/r_in unless the sheath is bent unevenly. The sheath slides with the
+/// velocity of the drive, less the part that only stretches the cables (`cable:compliance`), and carries the torque of
+/// the output. The output before the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle
+/// (`sheath:presliding`) replaces the gate by its share. Axial stiffness and length cancel out of the torque of cables
+/// that do not stretch.
 ///
 /// Of a shape's curvature the torque sees two numbers up to order (mu theta)³: the wrap angle and the mean angle turned
 /// along the sheath, which `curvature_skew` states as the linear curvature that has it.
@@ -21,16 +20,17 @@ struct BowdenPair : SystemDefaults {
                                         "tanh(s_v (v^2 - v_t^2))/2 + 1/2";
   static constexpr int dof = 0;
   static constexpr bool sampled = true, plain_names = true;
-  /// Numbers that one sample hands to the next: the output of the gate, the held output and its input, and the travel.
-  enum Carried { gate_output, held_output, held_input, travel, carried };
-  static constexpr double gate_period = 1e-3;  ///< s, of the control loop whose steps the gate speaks of
   static constexpr std::array ports{port("sheath"), port("cable")};
   static constexpr std::array inputs{
       input("input_torque", Dimension::effort, Between::linear, "torque of the drive").required(),
       input("input_velocity", Dimension::flow, Between::linear, "velocity of the drive").required()};
   static constexpr std::array outputs{output("output_torque", Dimension::effort, "torque on the load")};
   static constexpr std::array places{Place{"actuation", "of the drive"}};
-  static constexpr std::array<std::string_view, 1> nominal{"sheath:capstan"};
+  static constexpr std::string_view passing = "sheath";
+  static constexpr std::array<std::string_view, 1> structural{"sheath:velocity_gate"}, nominal{"sheath:capstan"};
+  static constexpr std::array<Renamed, 3> renamed{{{"sheath:velocity_gate", "threshold_velocity", "threshold_velocity"},
+                                                   {"sheath:velocity_gate", "threshold_slope", "threshold_slope"},
+                                                   {"sheath:velocity_gate", "gate_share", "gate_share"}}};
 
   using Laws = typename Joined<transmission::Sheath, friction::All>::type;
   std::tuple<Slot<T, Laws>, Slot<T, transmission::Tendons>> slot;
@@ -39,15 +39,15 @@ struct BowdenPair : SystemDefaults {
                            tendonlab::actuation::DriveInertia>>
       actuation;
   std::array<Chain<T, sensing::All>, 1> sensor;
-  T threshold_velocity, threshold_slope, input_radius, output_radius, sheath_length, cable_stiffness, pretension,
-      wrap_angle, curvature_skew;
+  Chain<T, transmission::SheathEffort> passed;
+  struct Carried {
+    T travel{};
+    typename decltype(passed)::States states{};
+  };
+  T input_radius, output_radius, sheath_length, cable_stiffness, pretension, wrap_angle, curvature_skew;
 
   static constexpr auto parameters() {
     return std::tuple{
-        parameter(&BowdenPair::threshold_velocity, "threshold_velocity", Dimension::flow, Purpose::structure, 0.1, 0.0,
-                  inf, "speed of the drive at which half of a step gets through the gate"),
-        parameter(&BowdenPair::threshold_slope, "threshold_slope", Dimension::per_flow_squared, Purpose::structure, 1e3,
-                  1e-9, inf, "steepness of the gate over the square of the speed"),
         parameter(&BowdenPair::input_radius, "input_radius", Dimension::length, Purpose::structure, 0.05, 1e-9, inf,
                   "radius of the drive's pulley"),
         parameter(&BowdenPair::output_radius, "output_radius", Dimension::length, Purpose::structure, 0.05, 1e-9, inf,
@@ -67,32 +67,27 @@ struct BowdenPair : SystemDefaults {
   template <class Inputs, class Memory>
   Sample<T, 1, 2> evaluate(const Inputs& in, Memory& memory) const {
     const auto& sheath = std::get<0>(slot);
-    const T torque = actuation.apply(Passing<T>{in.template input<0>(), in.template slope<1>()});
-    const PairSliding drive = at_drive(in);
-    const T velocity = std::get<1>(slot).moved(drive).velocity;
-    memory.own[travel] = memory.own[travel] + in.dt * velocity;
-    const SheathSliding at = at_sheath(velocity, memory.own[travel], torque), seen = sheath.moved(at);
+    const DriveEffort effort{{in.template input<0>(), in.dt}, in.template slope<0>(), in.template slope<1>()};
+    const PairSliding drive = at_drive(in.template input<1>(), effort);
+    const T torque = actuation.pass(effort), velocity = std::get<1>(slot).moved(drive).velocity;
+    memory.own.travel = memory.own.travel + in.dt * velocity;
+    const SheathSliding at = at_sheath(velocity, memory.own.travel, torque);
     memory.slot[0] = advanced(sheath, at, memory.slot[0], in.dt);
     const T friction = sheath.respond(at, memory.slot[0]).force;
-    T middle = at.load, smooth{};  // output without friction, and friction without memory and edge
-    sheath.template each<role::gain>([&](const auto& law) { middle = law.gain(seen) * middle; });
-    sheath.template each<role::force>([&](const auto& law) { smooth = smooth + law.force(seen); });
-    if (!memory.begun) memory.own[gate_output] = memory.own[held_output] = memory.own[held_input] = middle;
-    memory.own[gate_output] =
-        behind_gate(T(middle - friction), velocity, memory.begun ? in.dt / gate_period : 1.0, memory.own[gate_output]);
-    const T output = held(memory.own[gate_output], T(middle - smooth), seen, memory);
-    return {{output}, {at, stretch(drive)}, {friction, torque}};
+    return {
+        {passed.pass(transmitted(at, friction, in.dt), memory.own.states)}, {at, stretch(drive)}, {friction, torque}};
   }
 
  private:
+  using DriveEffort = tendonlab::actuation::DriveEffort<T>;
   using PairSliding = transmission::PairSliding<T>;
   using SheathSliding = transmission::SheathSliding<T>;
+  using TransmittedEffort = transmission::TransmittedEffort<T>;
 
-  template <class Inputs>
-  PairSliding at_drive(const Inputs& in) const {
+  PairSliding at_drive(const T& velocity, const DriveEffort& effort) const {
     PairSliding at;
-    static_cast<Sliding<T>&>(at) = sliding(in.template input<1>(), T(0.0), in.template input<0>());
-    at.load_rate = in.template slope<0>();
+    static_cast<Sliding<T>&>(at) = sliding(velocity, T(0.0), effort.signal);
+    at.load_rate = effort.slope;
     at.compliance = transmission::pair_compliance(sheath_length, cable_stiffness, input_radius);
     return at;
   }
@@ -107,21 +102,19 @@ struct BowdenPair : SystemDefaults {
     at.curvature.skew = curvature_skew;
     return at;
   }
-  /// The output behind the gate, `periods` of its loop after it was `before`.
-  T behind_gate(const T& target, const T& velocity, double periods, const T& before) const {
-    const mechanics::VelocityGate<T> gate{threshold_velocity, threshold_slope};
-    return gate.output(target, before, velocity, periods, std::get<0>(slot).left_to_slide(T(1.0)));
-  }
-  /// The output behind the laws that hold it; dry friction acts about `middle`.
-  template <class Memory>
-  T held(T output, const T& middle, const SheathSliding& seen, Memory& memory) const {
+  /// The torque on the load, of `friction` at this sliding, before the laws that hold it.
+  TransmittedEffort transmitted(const SheathSliding& at, const T& friction, double dt) const {
     const auto& sheath = std::get<0>(slot);
-    sheath.template each<role::output>([&](const auto& law) {
-      const auto now = law.next({memory.own[held_output], memory.own[held_input]}, middle, sheath.dry_level(seen));
-      memory.own[held_output] = now.held, memory.own[held_input] = now.input;
-      output = law.output(output, now);
-    });
-    return output;
+    const SheathSliding seen = sheath.moved(at);
+    TransmittedEffort of;
+    of.frictionless = at.load;
+    sheath.template each<role::gain>([&](const auto& law) { of.frictionless = law.gain(seen) * of.frictionless; });
+    T smooth{};  // friction without memory and edge
+    sheath.template each<role::force>([&](const auto& law) { smooth = smooth + law.force(seen); });
+    of.signal = of.frictionless - friction, of.dt = dt, of.smooth = of.frictionless - smooth;
+    of.dry_level = sheath.dry_level(seen), of.bristle_share = 1.0 - sheath.left_to_slide(T(1.0));
+    of.velocity = at.velocity;
+    return of;
   }
 };
 }  // namespace tendonlab::systems

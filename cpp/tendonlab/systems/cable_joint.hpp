@@ -41,7 +41,7 @@ struct CableJoint : SystemDefaults {
       port("cable").named("cable_1").along(Axis::linear),
       port("cable").named("cable_2").along(Axis::linear),
       port("bushing_1").along(Axis::linear).turns(motor_sense).while_driven(guide_sense),
-      port("bushing_2").along(Axis::linear).turns(motor_sense).while_driven(guide_sense),
+      port("bushing_2").along(Axis::linear).turns(motor_sense).while_driven(guide_sense).mirrored(),
       port("stiction").named("stiction_1").along(Axis::linear).turns(motor_sense).while_driven(nut_sense),
       port("stiction").named("stiction_2").along(Axis::linear).turns(motor_sense).while_driven(nut_sense)};
   static constexpr bool joined[num_ports][2] = {{true, false}, {false, true}, {false, true}, {false, true},
@@ -103,13 +103,6 @@ struct CableJoint : SystemDefaults {
         own(&C::gravity, "gravity", Dimension::acceleration, 0.0, "0: the joint moves in a horizontal plane")};
   }
   void prepare() {
-    // eq. 11 names directions of both cables by the motion of cable 1: forwards of cable 2 is its other pair of
-    // branches
-    auto& two = std::get<friction::BushingBranches<T>>(std::get<bushing_2>(slot).laws);
-    std::swap(two.a1, two.a2);
-    std::swap(two.b11, two.b21);
-    std::swap(two.b12, two.b22);
-    std::swap(two.c1, two.c2);
     per_turn = inverse_turn * screw_pitch;
     travel = per_turn / gear_ratio;
     rest_stretch = holding_stretch(T(0.0));

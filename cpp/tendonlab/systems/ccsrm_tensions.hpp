@@ -17,7 +17,7 @@ struct CcsrmTensions : CcsrmCables<T> {
   enum PortOf { c11, c12, c21, c22, cable };
   static constexpr int dof = 0;
   static constexpr bool sampled = true;
-  static constexpr std::size_t carried = 2;  ///< angles of joints 1 and 2 at the sample before
+  using Carried = std::array<T, 2>;  ///< angles of joints 1 and 2 at the sample before
   static constexpr std::array ports{contact_ports[0], contact_ports[1], contact_ports[2], contact_ports[3], cable_port};
   static constexpr std::array inputs{
       Base::driver_angle, input("joint_angle", Dimension::angle, Between::smooth, "angle of joint 1").required()};
@@ -33,7 +33,7 @@ struct CcsrmTensions : CcsrmCables<T> {
     const auto& laws = std::get<c11>(slot);  // those of every contact
     const T angle[2] = {in.template input<1>(), in.template input<0>()};
     const T rate[2] = {in.template slope<1>(), in.template slope<0>()};
-    if (memory.begun) {
+    if (in.dt > 0.0) {
       const T mean[2] = {0.5 * (memory.own[0] + angle[0]), 0.5 * (memory.own[1] + angle[1])};
       const T moved[2] = {(angle[0] - memory.own[0]) / in.dt, (angle[1] - memory.own[1]) / in.dt};
       const auto on_the_way = seen(mean, moved);

@@ -3,8 +3,7 @@
 // and `observe` they state
 //   template <class Inputs, class Memory> Sample evaluate(const Inputs& in, Memory& memory) const;
 // with in.template input<k>(), slope<k>(), given<k>(), in.dt (s since the sample before, 0 at the first); memory.slot
-// holds the states of the slots' laws, memory.own the numbers that the system itself hands on (`carried` of them),
-// memory.begun whether there was a sample before.
+// holds the states of the slots' laws, memory.own what the system itself hands on (its `Carried`, empty at the first).
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::systems {
@@ -15,11 +14,10 @@ struct Sample {
   std::array<Sliding<T>, ports> port{};
   std::array<T, ports> force{};
 };
-template <class T, std::size_t states, std::size_t carried>
+template <class T, std::size_t states, class Carried>
 struct Memory {
   std::array<T, states> slot{};
-  std::array<T, carried> own{};
-  bool begun = false;
+  Carried own{};
 };
 
 /// Sliding of a port whose direction is that of its velocity, none at rest.

@@ -54,6 +54,7 @@ struct Port {
   int direction = -1, side = -1;       ///< modes: direction of sliding, flank of a gap
   int direction_while_driven = -1;     ///< mode of the direction in experiments that give the system's input `driver`
   bool driven = false;                 ///< inputs prescribe its velocity: it never sticks
+  bool is_mirrored = false;            ///< slides backwards where the port that its laws are stated for slides forwards
 
   /// A name of its own, where several ports share an element.
   constexpr Port named(std::string_view own) const {
@@ -89,6 +90,11 @@ struct Port {
     p.direction_while_driven = mode;
     return p;
   }
+  constexpr Port mirrored() const {
+    Port p = *this;
+    p.is_mirrored = true;
+    return p;
+  }
   /// It has a gap, whose flank is this mode.
   constexpr Port with_gap(int mode) const {
     Port p = *this;
@@ -122,13 +128,14 @@ struct SystemDefaults {
   static constexpr int driver = -1;                 ///< the input that, where given, drives ports `while_driven`
   static constexpr bool moving = false;             ///< levers and inverse inertias change with the motion
   static constexpr bool sampled = false;            ///< answers sample by sample, without a differential equation
-  static constexpr std::size_t carried = 0;         ///< numbers that a sampled system remembers besides its slots
   static constexpr bool commanded = false;          ///< input 0 is the command of an actuator: state effort_per_command
   static constexpr bool plain_names = false;        ///< parameters of nominal effects carry no element in front
   static constexpr std::string_view grown_by = {};  ///< the effect that replaces the system by its `Grown`
   static constexpr std::array<std::string_view, 0> structural{}, nominal{};  ///< effects always there, and by default
   static constexpr std::array<Renamed, 0> renamed{};
   static constexpr std::array<Place, 0> places{};  ///< words for its own elements
+  static constexpr std::string_view passing{};     ///< element whose effort passes the laws of a Chain `passed`
+  struct Carried {};                               ///< what a sampled system remembers besides its slots
   void prepare() {}
 };
 

@@ -20,7 +20,7 @@ struct TendonRouting : SystemDefaults, tendon::Entries<T> {
   static constexpr int dof = 0;
   static constexpr bool sampled = true;
   static constexpr std::size_t n = tendon::joints, branches = tendon::branches;
-  static constexpr std::size_t carried = branches;  ///< travel of each branch
+  using Carried = std::array<T, branches>;  ///< travel of each branch
   static constexpr auto ports = tendon::ports();
   static constexpr auto inputs = tendon::inputs();
   static constexpr auto outputs = tendon::outputs();

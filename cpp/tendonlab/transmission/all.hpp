@@ -15,6 +15,7 @@
 #include "tendonlab/transmission/slack.hpp"
 #include "tendonlab/transmission/taut_compliance.hpp"
 #include "tendonlab/transmission/toe_region.hpp"
+#include "tendonlab/transmission/velocity_gate.hpp"
 
 namespace tendonlab::transmission {
 using All = Laws<Backlash, Compliance>;
@@ -23,7 +24,9 @@ using Contacts = Laws<Capstan, ContactStribeck, ContactAsymmetry>;
 /// Of a drive that pulls pretensioned cables by a gear.
 using Pull = Laws<TautCompliance, ToeRegion, Ripple, Hold>;
 /// Of pretensioned tendons in sheaths.
-using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack, DistributedPresliding>;
+using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack>;
+/// Of the effort that those sheaths pass on.
+using SheathEffort = Laws<VelocityGate, DistributedPresliding>;
 /// Of those tendons themselves.
 using Tendons = Laws<CableStretch>;
 /// Of the sections of a cable beyond its pulleys.

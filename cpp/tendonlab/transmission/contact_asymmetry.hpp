@@ -1,6 +1,5 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
-#include "tendonlab/core/terms.hpp"
+#include "tendonlab/transmission/capstan.hpp"
 
 namespace tendonlab::transmission {
 /// Friction coefficient of a contact that differs by direction, as strands make it: mu (1 + a) forwards, mu (1 - a)
@@ -16,8 +15,8 @@ struct ContactAsymmetry {
   static constexpr std::string_view name = "asymmetry", noun = "direction-dependent friction",
                                     source = "S4 section V, identified coefficients", equation = "mu (1 + a sgn(v))",
                                     summary = "direction-dependent friction coefficient of a contact";
-  static constexpr std::string_view shares_with = "capstan";
   static constexpr unsigned roles = role::factor | role::refines, sees = sees_wrap;
+  using Partner = Capstan<T>;  ///< its parameters of equal names are those of this law
   T friction_coefficient, difference;
 
   static constexpr auto parameters() {

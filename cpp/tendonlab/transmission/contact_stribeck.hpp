@@ -1,6 +1,5 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
-#include "tendonlab/core/terms.hpp"
+#include "tendonlab/transmission/capstan.hpp"
 
 namespace tendonlab::transmission {
 /// Stribeck friction of a contact that states friction coefficients: at low speed the static one takes over.
@@ -14,8 +13,8 @@ struct ContactStribeck {
   static constexpr std::string_view name = "stribeck", noun = "Stribeck friction", source = "S4 eqs 27, 29",
                                     equation = "g (1 + p (mu_s/mu - 1) exp(-(v/v_s)^2)) sgn(v)",
                                     summary = "Stribeck friction: a larger friction coefficient at low speed";
-  static constexpr std::string_view shares_with = "capstan";
   static constexpr unsigned roles = role::factor | role::refines, sees = sees_velocity;
+  using Partner = Capstan<T>;  ///< its parameters of equal names are those of this law
   T static_coefficient, share;
   Divisor<T> falloff, kinetic_coefficient;
 

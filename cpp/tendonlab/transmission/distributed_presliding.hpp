@@ -1,5 +1,5 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/transmission/transmitted_effort.hpp"
 
 namespace tendonlab::transmission {
 /// Presliding spread along an elastic cable: at a reversal the cable gives way from its input on, and the output is
@@ -12,7 +12,7 @@ namespace tendonlab::transmission {
 /// m: output torque without dry friction, N·m (N), s: the sense in which it changes, g: dry friction level, w: friction
 /// that has yet to turn over, d: rise of the output. rho: rise within which all but 1/e of w turns over; at a load of
 /// stiffness K and a breakaway displacement z it is K z, and rho -> 0 is the play operator of S4. tau: output by the
-/// other laws, N·m (N). a: share of it; 1: no gate. a = 0 switches it off. Memory: y and m.
+/// other laws, N·m (N). a: share of it; 1: no gate. a = 0 switches it off. State: y and m.
 template <class T>
 struct DistributedPresliding {
   static constexpr std::string_view name = "distributed_presliding", noun = "distributed presliding friction",
@@ -23,7 +23,9 @@ struct DistributedPresliding {
                                     summary =
                                         "presliding spread along the cable: the output is held until the friction of "
                                         "the whole sheath has turned over";
-  static constexpr unsigned roles = role::output | role::refines, sees = sees_nothing;
+  static constexpr unsigned roles = role::signal | role::refines, sees = sees_nothing;
+  template <class S>
+  using Signal = TransmittedEffort<S>;
   T turnover_rise, share;
 
   static constexpr auto parameters() {
@@ -38,18 +40,17 @@ struct DistributedPresliding {
   struct State {
     S held{}, input{};
   };
-  /// The state after `before`, when the output without dry friction has become `input` and the dry friction is `level`.
   template <class S>
-  State<S> next(const State<S>& before, const S& input, const S& level) const {
-    const double sense = plain(input) < plain(before.input) ? -1.0 : 1.0;
-    const S friction = limited(S(before.input - before.held), level);  // friction above the level has slipped
-    const S turning = rise(S(sense * (input - before.input)), S(level - sense * friction));
-    return {S(before.input - friction + sense * turning), input};
+  State<S> next(State<S> before, const TransmittedEffort<S>& at) const {
+    if (at.dt == 0.0) before = {at.frictionless, at.frictionless};
+    const double sense = plain(at.smooth) < plain(before.input) ? -1.0 : 1.0;
+    const S friction = limited(S(before.input - before.held), at.dry_level);  // friction above the level has slipped
+    const S turning = rise(S(sense * (at.smooth - before.input)), S(at.dry_level - sense * friction));
+    return {S(before.input - friction + sense * turning), at.smooth};
   }
-  /// The output of the element where the other laws say `effort`.
   template <class S>
-  S output(const S& effort, const State<S>& now) const {
-    return effort + share * (now.held - effort);
+  S apply(const TransmittedEffort<S>& at, const State<S>& now) const {
+    return at.signal + share * (now.held - at.signal);
   }
 
  private:

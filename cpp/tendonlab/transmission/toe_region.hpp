@@ -1,5 +1,5 @@
 #pragma once
-#include "tendonlab/core/law.hpp"
+#include "tendonlab/transmission/taut_compliance.hpp"
 
 namespace tendonlab::transmission {
 /// Toe region of a cable of fibres: they straighten before they stretch, so below a tension it is softer.
@@ -17,8 +17,8 @@ struct ToeRegion {
   static constexpr std::string_view name = "toe_region", noun = "soft toe region", source = "S2 sec. IV-B.2",
                                     equation = "T + k x -> (T + k x + F_s)^2 / 4 F_s below F_s",
                                     summary = "toe region: a cable of fibres is softer below a tension";
-  static constexpr std::string_view shares_with = "taut_compliance";
   static constexpr unsigned roles = role::motion, sees = sees_position;
+  using Partner = TautCompliance<T>;  ///< its parameters of equal names are those of this law
   T pretension, stiffness, toe_tension;
 
   static constexpr auto parameters() {

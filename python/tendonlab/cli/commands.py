@@ -225,7 +225,7 @@ def _identify(given: Arguments) -> int:
 def _simulate(given: Arguments) -> int:
     from tendonlab.cli.text import errors_text
     from tendonlab.data import load
-    from tendonlab.simulation.sweep import refuse_conditions
+    from tendonlab.sweeping.points import refuse_conditions
 
     rig = load(_folder(given.dataset))
     _require_writable(given.out)

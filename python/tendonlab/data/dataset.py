@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.errors import DatasetError, ParameterError, expected_one_of
-from tendonlab.simulation.equality import same_fields
+from tendonlab.simulation.equality import EqualByFields
 from tendonlab.simulation.records import Controller, Experiment, NominalParameter, SignalSpec
 from tendonlab.simulation.system import System
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Dataset:
+class Dataset(EqualByFields):
     """A checked dataset: a rig's logs and the simulator they are compared with. What `load` gives.
 
     `dataset["sweep-1"]` is one experiment (DatasetError where there is none of that name), and looping gives them all.
@@ -113,11 +113,6 @@ class Dataset:
             "experiments": experiments,
             "warnings": list(self.warnings),
         }
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, Dataset) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # its frames can be changed
 
     def __repr__(self) -> str:
         size = f"{len(self.train)} experiments to fit, {len(self.test)} held out"

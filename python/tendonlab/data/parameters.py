@@ -105,11 +105,11 @@ def _assume(table: Table, parameter: ParameterInfo, info: SystemInfo) -> Nominal
     structural = {effect.name for effect in info.effects if effect.structural}
     own = parameter.effect is None or not structural.isdisjoint(_effects_with(parameter, info))
     counted = parameter.purpose == "shape" and parameter.dimension in ("ratio", "time")
-    absolute = counted or parameter.purpose == "share"
-    if parameter.purpose == "condition" or (own and (parameter.typical == 0.0 or parameter.role == "command_gain")):
+    usual = own and (parameter.typical == 0.0 or parameter.role == "command_gain")
+    if parameter.purpose in ("condition", "share") or usual:
         value, known = parameter.typical, True
-    elif not own and absolute:
-        value, known = parameter.typical, parameter.purpose == "share"
+    elif not own and counted:
+        value, known = parameter.typical, False
     elif not own and parameter.lower <= 0.0 <= parameter.upper:
         value, known = 0.0, False
     else:

@@ -13,6 +13,7 @@ import pandas as pd
 
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.fitting.problem import Problem
+from tendonlab.simulation.equality import EqualByFields
 from tendonlab.simulation.system import System
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ HARDLY = 0.9  # of an output's rms about its mean: a fit that leaves more explai
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Identification:
+class Identification(EqualByFields):
     """What `identify` found.
 
     `parameters`: indexed by name; value, nominal (0 where the simulator had none), sd, ci95_lower, ci95_upper, unit,
@@ -46,7 +47,7 @@ class Identification:
     message: str = field(default="", repr=False)
     num_iterations: int = 0
     warnings: tuple[str, ...] = field(default=(), repr=False)
-    problem: Problem = field(repr=False)
+    problem: Problem = field(repr=False, compare=False)  # what the other fields were computed from
 
     @property
     def values(self) -> dict[str, float]:

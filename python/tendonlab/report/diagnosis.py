@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from tendonlab.errors import ParameterError
 from tendonlab.report.words import STAGES, VERDICTS
+from tendonlab.simulation.equality import EqualByFields
+from tendonlab.version import version
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,24 +29,14 @@ _DRAWN: Mapping[str, Any] = {"write": None}  # metadata of a field that report.j
 _BY_ROW: Mapping[str, Any] = {"write": lambda frame: frame.to_dict(orient="index")}
 
 
-def version() -> str:
-    """The version of tendonlab that runs, "0.0.0" where it is used without being installed."""
-    from importlib import metadata
-
-    try:
-        return metadata.version("tendonlab")
-    except metadata.PackageNotFoundError:
-        return "0.0.0"
-
-
 def _empty_table() -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame(columns=list(STAGES), dtype=float)
 
 
-@dataclass(frozen=True, kw_only=True)
-class EffectFinding:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EffectFinding(EqualByFields):
     """One candidate effect: how probable it is and what it would do.
 
     `probability` is marginal: that this effect is part of the cause. `parameters`: name -> {value, ci95, unit}, in the
@@ -71,7 +63,7 @@ class EffectFinding:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Overlay:
+class Overlay(EqualByFields):
     """One held-out experiment with its three predictions.
 
     `time` has shape (n,), s; the arrays per signal have shape (n,) in its unit, NaN where not measured. `floor` is
@@ -93,7 +85,7 @@ class Overlay:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WhereMap:
+class WhereMap(EqualByFields):
     """Where in motion (and position or load) the residual of one element lies.
 
     `x_edges` (nx + 1,) and `y_edges` (ny + 1,) bound the cells, in `x_unit` and `y_unit`; `refitted` and `with_effect`,
@@ -118,7 +110,7 @@ class WhereMap:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SideTable:
+class SideTable(EqualByFields):
     """A further table for the report, e.g. a comparison by inverse dynamics. The index is shown where it has a name."""
 
     title: str
@@ -127,7 +119,7 @@ class SideTable:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Diagnosis:
+class Diagnosis(EqualByFields):
     """Why the simulator and the rig disagree. Its fields are the keys of report.json, which docs/datasets.md explains;
     those with `write` None in their metadata are only drawn.
 

@@ -13,7 +13,7 @@ from tendonlab.errors import ParameterError, expected_one_of
 __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInfo", "PortInfo", "SystemInfo"]
 
 AXES = ("rotary", "linear")
-LEVEL, MEMORY, REFINES, WHOLE = 2, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
+LEVEL, FACTOR, MEMORY, REFINES, WHOLE = 2, 4, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
 DIMENSIONS = _core.dimensions()
 Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)
 
@@ -26,6 +26,11 @@ class SystemInfo(_core.SystemInfo):
         self._parameters = {row.name: row for row in self.parameters}
         self._effects = {row.name: row for row in self.effects}
         self._elements = {row.name: row for row in self.elements}
+        place = {name: k for k, name in enumerate(self._parameters)}
+        self.amplitudes: dict[str, list[int] | None] = {  # places of each effect's amplitudes; None: always acts
+            e.name: None if e.structural else [place[n] for n in e.parameters if self._parameters[n].amplitude]
+            for e in self.effects
+        }
 
     def parameter(self, name: str) -> ParameterInfo:
         """The row of that name; ParameterError, with the nearest name, where there is none."""

@@ -9,13 +9,16 @@ import numpy as np
 import pandas as pd
 
 from tendonlab import _core
+from tendonlab.arguments import within
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.records import Experiment
-from tendonlab.simulation.signals import hold, linear, motion_at_start, scales_of, smooth, smoothed
+from tendonlab.simulation.signals import hold, linear, scales_of, smooth, smoothed
+from tendonlab.simulation.start import Start, start_of
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import Controller
+MAX_ATTEMPTS, ATTEMPTS_PER_SAMPLE = 1_000_000, 1_000  # of the stepper: beyond them a parameter is far too stiff
 REPLAYS = ("auto", "controller", "free")  # of `System.simulate`; an injection needs the gains of a dataset
 
 
@@ -52,12 +55,14 @@ class Replay:
 
 @dataclass(frozen=True, kw_only=True)
 class Prepared:
-    """An experiment as the core simulates it. `measured`: (outputs, samples), NaN where missing. `initial`: the parts
-    of the initial state that are nuisances, with the sd of their priors."""
+    """An experiment as the core simulates it. `measured`: (outputs, samples), NaN where missing. `start`: how it
+    begins for any parameters. `initial`: the parts of the initial state that are nuisances, with the sd of their
+    priors."""
 
     name: str
     core: _core.Experiment
     measured: np.ndarray
+    start: Start
     initial: tuple[tuple[str, int], ...]
     initial_sd: tuple[float, ...]
     position_scale: float
@@ -68,6 +73,16 @@ class Prepared:
         """Means of those parts of the initial state."""
         start = {"position": self.core.position, "velocity": self.core.velocity}
         return np.array([start[of][axis] for of, axis in self.initial])
+
+    def settings(self, tolerance: float, *, ports: bool = False) -> _core.Settings:
+        """How the core is to step at a relative error `tolerance` per step."""
+        return _core.Settings(
+            tolerance=within("tolerance", tolerance, 1e-14, 0.1),
+            position_scale=self.position_scale,
+            velocity_scale=self.velocity_scale,
+            max_attempts=MAX_ATTEMPTS + ATTEMPTS_PER_SAMPLE * self.measured.shape[1],
+            ports=ports,
+        )
 
 
 def prepare(experiment: Experiment, system: Simulator, replay: Replay) -> Prepared:
@@ -81,18 +96,21 @@ def prepare(experiment: Experiment, system: Simulator, replay: Replay) -> Prepar
     for c, signal in enumerate(outputs):
         if signal.name in data.columns:
             measured[c] = _samples(experiment, signal.name)
-    position, velocity, free, sd = _initial_state(experiment, system, measured)
+    start = start_of(experiment, system.info, measured)
+    shape = np.array(_core.rigid_motion(system.kind, system.values(), system.active())[0])
+    position, velocity = start.state(shape)
+    free, sd = start.nuisances(shape)
     core = _core.Experiment(
         kind=system.kind,
         time=time.tolist(),
         inputs=_inputs(experiment, system, replay),
         loop=_loop(experiment, system, replay, measured),
-        position=position,
-        velocity=velocity,
+        position=position.tolist(),
+        velocity=velocity.tolist(),
     )
     scale = scales_of(time, measured[[s.axis is not None for s in outputs]])
     return Prepared(
-        name=experiment.name, core=core, measured=measured, initial=tuple(free), initial_sd=tuple(sd),
+        name=experiment.name, core=core, measured=measured, start=start, initial=free, initial_sd=sd,
         position_scale=scale[0], velocity_scale=scale[1],
     )  # fmt: skip
 
@@ -220,45 +238,3 @@ def _controller_loop(experiment: Experiment, system: Simulator, controller: Cont
         reference=make(time, reference),
         disturbance=disturbance,
     )
-
-
-def _initial_state(
-    experiment: Experiment, system: Simulator, measured: np.ndarray
-) -> tuple[list[float], list[float], list[tuple[str, int]], list[float]]:
-    """Start of each degree of freedom from its first samples; where it is not measured, from the others as if nothing
-    stretched. What was measured or inferred stays a nuisance, what `initial` states is known."""
-    info = system.info
-    shape, _, _ = _core.rigid_motion(system.kind, system.values(), system.active())
-    starts: dict[int, tuple[float, float, float]] = {}
-    for c, signal in enumerate(info.outputs):
-        if signal.axis is not None and np.isfinite(measured[c]).any():
-            starts[signal.axis] = (
-                *motion_at_start(experiment.time, measured[c]),
-                float(np.nanmax(measured[c]) - np.nanmin(measured[c])),
-            )
-    position, velocity, free, sd = [0.0] * info.dof, [0.0] * info.dof, [], []
-    for j in range(info.dof):
-        known = j if j in starts else next(iter(starts), None)
-        if known is None:
-            continue
-        share = shape[j] / shape[known]
-        y, rate, reach = (share * part for part in starts[known])
-        position[j], velocity[j] = y, rate
-        names = [s.name for s in info.outputs if s.axis == j]
-        stated_position = next((experiment.initial[n] for n in names if n in experiment.initial), None)
-        stated_rate = next((experiment.initial[n] for n in _velocity_names(names) if n in experiment.initial), None)
-        if stated_position is not None:
-            position[j] = stated_position
-        elif reach != 0:
-            free.append(("position", j))
-            sd.append(0.1 * abs(reach))
-        if stated_rate is not None:
-            velocity[j] = stated_rate
-        elif rate != 0:
-            free.append(("velocity", j))
-            sd.append(abs(rate))
-    return position, velocity, free, sd
-
-
-def _velocity_names(angles: list[str]) -> list[str]:
-    return [name.removesuffix("_angle") + "_velocity" for name in angles]

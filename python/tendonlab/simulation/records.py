@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tendonlab.simulation.equality import same_fields
+from tendonlab.simulation.equality import EqualByFields
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +57,7 @@ class SignalSpec:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Experiment:
+class Experiment(EqualByFields):
     """One record. `data` is indexed by time "t", s, with one float column per signal, SI; outputs may hold NaN.
 
     `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
@@ -83,11 +83,6 @@ class Experiment:
     def duration(self) -> float:
         """From the first sample to the last, s."""
         return float(self.time[-1] - self.time[0]) if len(self.data) else 0.0
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, Experiment) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # its frames can be changed
 
     def __repr__(self) -> str:
         signals = ", ".join(map(str, self.data.columns))

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
+from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tendonlab import _core
 from tendonlab.arguments import choice, interval_text, within
@@ -19,8 +22,6 @@ if TYPE_CHECKING:
 
     from tendonlab.simulation.records import Experiment
     from tendonlab.simulation.trajectory import Trajectory
-
-MAX_ATTEMPTS, ATTEMPTS_PER_SAMPLE = 1_000_000, 1_000  # of the stepper: beyond them a parameter is far too stiff
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class System:
         object.__setattr__(self, "effects", tuple(self.effects))
         for name in self.effects:
             self._require_company(name)
-        known = self._own_names()
+        known = self._own_names
         for name, value in self.parameters.items():
             if name not in known:
                 offer = expected_one_of(name, known)
@@ -90,18 +91,33 @@ class System:
 
     def values(self) -> list[float]:
         """One value per parameter of the core, in its order; effects that are off get any allowed number."""
-        own = set(self._own_names())
-        return [
+        return list(self._values)
+
+    @cached_property
+    def _values(self) -> tuple[float, ...]:
+        own = set(self._own_names)
+        return tuple(
             float(self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0))
             if p.name in own
             else min(max(0.0 if p.purpose == "amplitude" else p.typical, p.lower), p.upper)
             for p in self.info.parameters
-        ]
+        )
 
     def active(self, *, keep_zero: bool = False) -> list[bool]:
         """One flag per effect of the core. An effect whose amplitude is exactly 0 is off, unless `keep_zero`."""
-        acts = {name for name in self.effects if keep_zero or not self._vanishes(name)}
-        return [e.structural or e.name in acts for e in self.info.effects]
+        if keep_zero:
+            return [e.structural or e.name in self.effects for e in self.info.effects]
+        return [bool(acts) for acts in self.active_at(np.array(self._values))]
+
+    def active_at(self, values: np.ndarray) -> np.ndarray:
+        """One flag per effect, shape (..., effects), for values as `values` gives them, shape (..., parameters)."""
+        active = np.zeros((*values.shape[:-1], len(self.info.amplitudes)), dtype=bool)
+        for e, (name, amplitudes) in enumerate(self.info.amplitudes.items()):
+            if amplitudes is None:
+                active[..., e] = True
+            elif name in self.effects:
+                active[..., e] = (values[..., amplitudes] != 0.0).any(axis=-1)
+        return active
 
     def simulate(
         self,
@@ -124,13 +140,7 @@ class System:
         record = as_experiment(experiment)
         system = self.under(record)
         ready = prepare(record, system, choose_loop(record, self.controller, replay))
-        settings = _core.Settings(
-            tolerance=within("tolerance", tolerance, 1e-14, 0.1),
-            position_scale=ready.position_scale,
-            velocity_scale=ready.velocity_scale,
-            max_attempts=MAX_ATTEMPTS + ATTEMPTS_PER_SAMPLE * len(record.data),
-            ports=ports,
-        )
+        settings = ready.settings(tolerance, ports=ports)
         run = _core.simulate(self.kind, system.values(), system.active(), ready.core, [], settings)
         return trajectory_of(run, self.info, axis=self.axis, time=record.time)
 
@@ -138,7 +148,7 @@ class System:
         """The simulator with the conditions of an experiment and its additions; other names are covariates."""
         added = {n: self.parameters[n] + more for n, more in experiment.add.items() if n in self.parameters}
         fixed = {n: value for n, value in experiment.conditions.items() if n in self.parameters}
-        return self.with_parameters({**added, **fixed})
+        return self.with_parameters({**added, **fixed}) if added or fixed else self
 
     def to_dict(self) -> dict[str, Any]:
         """Kind, axis, effects and parameters as plain types."""
@@ -175,18 +185,13 @@ class System:
         row = self.info.parameter(name)
         return within(name, value, row.lower, row.upper, self.unit(name))
 
+    @cached_property
     def _own_names(self) -> list[str]:
         """Parameters of the system itself, of what is structural, and of its effects."""
         info = self.info
         on = {e.name for e in info.effects if e.structural} | set(self.effects)
         held = {name for e in info.effects if e.name in on for name in e.parameters}
         return [p.name for p in info.parameters if p.effect is None or p.name in held]
-
-    def _vanishes(self, effect: str) -> bool:
-        rows = [self.info.parameter(name) for name in self.info.effect(effect).parameters]
-        return all(
-            self.parameters.get(p.name, p.typical if p.purpose == "share" else 0.0) == 0.0 for p in rows if p.amplitude
-        )
 
 
 def require_system(given: object) -> System:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.simulation.catalog import SystemInfo, unit
-from tendonlab.simulation.equality import same_fields
+from tendonlab.simulation.equality import EqualByFields
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trajectory:
+class Trajectory(EqualByFields):
     """A simulated run; `run["joint_angle"]` is one output. `outputs`: by time "t", s, with one column per signal, SI.
 
     `units`: of each output. `ports`: a frame with columns (port, "velocity" | "position" | "load" | "force") where it
@@ -55,11 +56,6 @@ class Trajectory:
         """Time and outputs as lists."""
         return {"t": self.outputs.index.tolist(), **{str(c): self.outputs[c].tolist() for c in self.outputs.columns}}
 
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, Trajectory) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # its frames can be changed
-
     def __repr__(self) -> str:
         time = self.outputs.index
         span = f", {time[0]:g} to {time[-1]:g} s" if len(time) else ""
@@ -76,12 +72,19 @@ def trajectory_of(run: dict[str, Any], info: SystemInfo, *, axis: str, time: np.
     index = pd.Index(time, name="t")
     units = {s.name: unit(s.dimension, axis) for s in info.outputs}
     return Trajectory(
-        outputs=pd.DataFrame(run["outputs"].T, index=index, columns=list(units)),
+        outputs=pd.DataFrame(run["outputs"].T, index=index, columns=_columns(info)),
         units=units,
         ports=_port_frame(run["ports"], info, index) if "ports" in run else None,
         num_attempts=run["attempts"],
         num_events=run["events"],
     )
+
+
+@cache
+def _columns(info: SystemInfo) -> pd.Index[str]:
+    import pandas as pd
+
+    return pd.Index([s.name for s in info.outputs])
 
 
 def _port_frame(ports: np.ndarray, info: SystemInfo, index: pd.Index[float]) -> pd.DataFrame:

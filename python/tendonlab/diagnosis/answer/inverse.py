@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from tendonlab import _core
 from tendonlab.fitting.case import Case
 from tendonlab.report.diagnosis import SideTable
 from tendonlab.simulation.system import System
@@ -84,18 +83,17 @@ def _regressors(system: System, motion: Motion) -> np.ndarray:
 def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray:
     """Drive effort per unit of one amplitude: the force of its own law, everything else switched off."""
     p = system.info.parameter(name)
-    own = {q: system.parameters[q] for q in system.info.effect(f"{p.element}:{p.effect}").parameters}
+    effect = system.info.effect(f"{p.element}:{p.effect}")
+    own = {q: system.parameters[q] for q in effect.parameters}
     switched = {
         system.info.parameter(q).own: 1.0 if q == name else 0.0 if system.info.parameter(q).amplitude else value
         for q, value in own.items()
     }
-    if p.element == "actuation" and p.effect == "offset":
+    if (effect.group, effect.effect) == ("actuation", "offset"):
         return np.full_like(velocity, -_command_gain(system))
-    law = getattr(_core.friction, (p.effect or "").title().replace("_", ""), None)
-    # Laws of other groups may bear the same name; the equation tells them apart.
-    if law is None or law.equation != system.info.effect(f"{p.element}:{p.effect}").equation:
+    if effect.group != "friction":
         return np.zeros_like(velocity)
-    return np.asarray(law(**switched).force(velocity=velocity))
+    return np.asarray(effect.law(**switched).force(velocity=velocity))
 
 
 def _command_gain(system: System) -> float:

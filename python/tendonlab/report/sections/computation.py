@@ -7,8 +7,9 @@ from typing import Any
 
 from tendonlab.report import numbers
 from tendonlab.report.blocks import Block, Cell, Table, Terms
-from tendonlab.report.diagnosis import Diagnosis, version
+from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.words import REPLAYS, STAGES, capital, phrases, words
+from tendonlab.version import version
 
 _CALIBRATED = {
     True: "Calibrated on simulated rigs whose truth was withheld.",

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pickle
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures._base import DoneAndNotDoneFutures
 from multiprocessing import get_context
 from typing import Any
 
@@ -15,8 +16,8 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
-from tendonlab.simulation import sweep
-from tendonlab.simulation.system import System
+from tendonlab import _core
+from tendonlab.sweeping import executors, sizes
 
 TIME = np.arange(0.0, 1.0, 0.005)
 PUSHED = pd.DataFrame({"motor_torque": 0.4 * np.sin(6.0 * TIME)}, index=pd.Index(TIME, name="t"))
@@ -46,24 +47,34 @@ class OneByOne(Executor):
 
 @pytest.fixture
 def ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl-C at the moment when nothing is left but jobs that wait."""
+    """Ctrl-C at the moment when nothing is left but jobs that wait; a run a task."""
 
-    def done(jobs: dict[Future[Any], int]) -> Iterator[Future[Any]]:
-        yield from [job for job in jobs if job.done()]
-        raise KeyboardInterrupt
+    def done(jobs: Iterable[Future[Any]], **_: Any) -> DoneAndNotDoneFutures[Any]:
+        ended = {job for job in jobs if job.done()}
+        if not ended:
+            raise KeyboardInterrupt
+        return DoneAndNotDoneFutures(ended, set())
 
-    monkeypatch.setattr(sweep, "as_completed", done)
+    monkeypatch.setattr(executors, "wait", done)
+    one_run_a_task(monkeypatch)
+
+
+def one_run_a_task(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("FIRST_SECONDS", "TASK_SECONDS", "THREAD_SECONDS"):
+        monkeypatch.setattr(sizes, name, 0.0)
 
 
 def fails_above(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    plain = System.simulate
+    plain, place = _core.simulate_many, [p.name for p in SIM.info.parameters].index("coulomb")
 
-    def simulate(self: System, *given: Any, **named: Any) -> tl.Trajectory:
-        if self.parameters["coulomb"] > limit:
-            raise tl.NumericalError("joint_angle is not finite from t = 0.1 s")
-        return plain(self, *given, **named)
+    def simulate_many(kind: str, values: np.ndarray, *given: Any) -> list[str]:
+        messages = plain(kind, values, *given)
+        for k in np.flatnonzero(values[:, place] > limit):
+            given[-1][k] = np.nan
+            messages[k] = "joint_angle is not finite from t = 0.1 s"
+        return messages
 
-    monkeypatch.setattr(System, "simulate", simulate)
+    monkeypatch.setattr(_core, "simulate_many", simulate_many)
 
 
 def test_each_point_is_the_simulation_with_its_parameters() -> None:
@@ -165,7 +176,7 @@ def test_progress_in_a_log_is_whole_lines(capsys: pytest.CaptureFixture[str], mo
     tl.sweep(SIM, GRID, experiment=PUSHED, progress=False)
     assert capsys.readouterr() == ("", "")
     tl.sweep(SIM, GRID, experiment=PUSHED)
-    assert capsys.readouterr().err.splitlines() == [f"sweep: {k} of 6 runs" for k in range(1, 7)]
+    assert capsys.readouterr().err.splitlines() == [f"sweep: {k} of 6 runs, 0 s left" for k in range(1, 7)]
 
 
 def test_progress_in_a_terminal_is_a_bar(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

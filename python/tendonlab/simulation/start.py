@@ -1,0 +1,77 @@
+"""Where an experiment begins: the state that its first samples show, for one set of parameters or for many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab.simulation.catalog import SystemInfo
+from tendonlab.simulation.records import Experiment
+from tendonlab.simulation.signals import motion_at_start
+
+
+@dataclass(frozen=True)
+class Start:
+    """`follows`: for each degree of freedom the measured one that it moves with as if nothing stretched, itself where
+    it was measured; None where nothing was. `motion`: position, velocity and travel of the measured ones. `position`
+    and `velocity`: what the experiment states."""
+
+    follows: tuple[int | None, ...]
+    motion: Mapping[int, tuple[float, float, float]]
+    position: Mapping[int, float]
+    velocity: Mapping[int, float]
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether the state depends on the rigid shape, and so on parameters."""
+        return any(k not in (None, j) for j, k in enumerate(self.follows))
+
+    def state(self, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Position and velocity, shape (..., dof), for rigid shapes (..., dof) as `_core.rigid_motion` gives them."""
+        position, velocity = np.zeros((2, *shape.shape[:-1], len(self.follows)))
+        for j, known in enumerate(self.follows):
+            if known is not None:
+                y, rate, _ = self.motion[known]
+                share = self._share(shape, j, known)
+                position[..., j] = self.position.get(j, share * y)
+                velocity[..., j] = self.velocity.get(j, share * rate)
+        return position, velocity
+
+    def nuisances(self, shape: np.ndarray) -> tuple[tuple[tuple[str, int], ...], tuple[float, ...]]:
+        """What is neither stated nor at rest, as ("position" | "velocity", degree of freedom), and the sd of each."""
+        found: dict[tuple[str, int], float] = {}
+        for j, known in enumerate(self.follows):
+            if known is None:
+                continue
+            share = float(self._share(shape, j, known))
+            _, rate, reach = (share * part for part in self.motion[known])
+            if j not in self.position and reach != 0:
+                found["position", j] = 0.1 * abs(reach)
+            if j not in self.velocity and rate != 0:
+                found["velocity", j] = abs(rate)
+        return tuple(found), tuple(found.values())
+
+    def _share(self, shape: np.ndarray, j: int, known: int) -> np.ndarray:
+        return np.ones(shape.shape[:-1]) if j == known else shape[..., j] / shape[..., known]
+
+
+def start_of(experiment: Experiment, info: SystemInfo, measured: np.ndarray) -> Start:
+    """The start that the samples `measured`, (outputs, samples), and the statements of an experiment show."""
+    motion = {
+        signal.axis: (*motion_at_start(experiment.time, y), float(np.nanmax(y) - np.nanmin(y)))
+        for signal, y in zip(info.outputs, measured, strict=True)
+        if signal.axis is not None and np.isfinite(y).any()
+    }
+    first = next(iter(motion), None)
+    position: dict[int, float] = {}
+    velocity: dict[int, float] = {}
+    for signal in info.outputs:
+        if signal.axis is not None:
+            rate = signal.name.removesuffix("_angle") + "_velocity"
+            if signal.name in experiment.initial:
+                position.setdefault(signal.axis, experiment.initial[signal.name])
+            if rate in experiment.initial:
+                velocity.setdefault(signal.axis, experiment.initial[rate])
+    return Start(tuple(j if j in motion else first for j in range(info.dof)), motion, position, velocity)
