@@ -14,13 +14,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tendonlab._core import Free
 from tendonlab.cli.text import identification_text
 from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
-from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.priors import LOG_SD
 from tendonlab.fitting.problem import Problem
 from tendonlab.identification import identify as output_error
 from tendonlab.identification.identify import identify
+from tendonlab.identification.samples import samples
 from tendonlab.simulation.system import System
 
 TRUE = {"inertia": 0.55, "gravity_torque": 1.1, "coulomb": 0.26, "viscous": 0.48, "torque_constant": 1.0}
@@ -154,6 +156,40 @@ def test_the_profile_is_a_parabola_where_the_model_is_right(fit: Any) -> None:
 def _information(fit: Any) -> np.ndarray:
     stacked = np.vstack([run.jacobian for run in fit.problem.solve().runs])
     return np.asarray(stacked.T @ stacked + np.diag([f.sd**-2.0 for f in fit.problem.free]))
+
+
+def test_samples_have_the_spread_of_the_fit_and_keep_its_bounds(fit: Any) -> None:
+    drawn = fit.samples(4000, seed=1)
+    assert list(drawn.columns) == list(fit.values)
+    assert drawn.equals(fit.samples(4000, seed=1))
+    free = {f.name: f for f in fit.problem.free}
+    for name, row in fit.parameters.iterrows():
+        assert drawn[name].between(free[name].lower, free[name].upper).all()
+        # the mean of 4000 strays by sd / 63, the sd by 1.1 %; logarithms bend both a little
+        assert drawn[name].mean() == pytest.approx(row["value"], abs=0.1 * row["sd"])
+        assert drawn[name].std() == pytest.approx(row["sd"], rel=0.1)
+    coordinates = pd.DataFrame({name: [free[name].coordinate(v) for v in drawn[name]] for name in drawn})
+    away = coordinates.corr() - fit.correlations.loc[list(drawn), list(drawn)]
+    assert np.abs(away.to_numpy()).max() < 0.08  # five of their sd
+
+
+def test_samples_hold_what_the_data_do_not_move(fit: Any) -> None:
+    name = str(fit.parameters.index[0])
+    table = fit.parameters.assign(at_bound=fit.parameters.index == name)
+    drawn = replace(fit, parameters=table).samples(50)
+    assert (drawn[name] == fit.values[name]).all()
+    assert (drawn.drop(columns=name).std() > 0).all()
+    with pytest.raises(ParameterError, match="num_points = 0: expected a whole number of at least 1"):
+        fit.samples(0)
+
+
+def test_samples_outside_the_bounds_are_drawn_anew() -> None:
+    free = Free(name="coulomb", index=0, log=False, scale=0.5, start=0.1, lower=0.0, upper=0.3)
+    wide = samples([free], np.array([0.1]), np.array([0.2]), np.eye(1), num=500, random=np.random.default_rng(0))
+    assert ((wide >= 0.0) & (wide <= 0.3)).all()
+    assert len(np.unique(wide)) == 500  # none is clipped to a bound
+    with pytest.raises(NumericalError, match="samples: 0 of 2000 draws were within the bounds, 2 expected"):
+        samples([free], np.array([-9.0]), np.array([0.2]), np.eye(1), num=2, random=np.random.default_rng(0))
 
 
 def test_more_starts_agree_and_repeat(fit: Any) -> None:

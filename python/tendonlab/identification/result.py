@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from tendonlab.arguments import whole
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.fitting.problem import Problem
+from tendonlab.identification.samples import samples
+from tendonlab.seed import generator
 from tendonlab.simulation.equality import EqualByFields
 from tendonlab.simulation.system import System
 
@@ -75,6 +78,22 @@ class Identification(EqualByFields):
         self._require(name)
         lower, upper = self.parameters["ci95_lower"], self.parameters["ci95_upper"]
         return float(lower[name]), float(upper[name])
+
+    def samples(self, num_points: int, *, seed: int | np.random.Generator = 0) -> pd.DataFrame:
+        """Values of the fitted parameters that agree with the data about as well, one point per row, for `tl.sweep`.
+
+        They are normal about the fit in its coordinates (the logarithm of a parameter that the fit keeps positive),
+        with its sd and correlations. A draw with any value outside its bounds is rejected and drawn anew. Parameters at
+        a bound and those not informed stay at their values. Raises ParameterError for a number below 1."""
+        whole("num_points", num_points, 1)
+        drawn = pd.DataFrame({name: np.full(num_points, value) for name, value in self.values.items()})
+        moving = self.parameters.index[self.parameters["informed"] & ~self.parameters["at_bound"]]
+        free = [f for f in self.problem.free if f.name in moving]
+        names = [f.name for f in free]
+        value, sd = (self.parameters.loc[names, column].to_numpy(dtype=float) for column in ("value", "sd"))
+        correlations = self.correlations.loc[names, names].to_numpy(dtype=float)
+        drawn[names] = samples(free, value, sd, correlations, num=num_points, random=generator(seed))
+        return drawn
 
     def profile(self, name: str, *, num_points: int = 9, reach: float = 3.0) -> pd.DataFrame:
         """Profile likelihood of one parameter: columns value, cost (over the optimum's, in nats) and converged, over
