@@ -46,8 +46,8 @@ def open_store(path: Path, layout: Layout, tolerance: float) -> Store | None:
     ours = fingerprint(layout, tolerance)
     other = [part for part, digest in ours.items() if store.record.parts.get(part) != digest]
     if other:
-        differs = f"{' and '.join(other)} {'differs' if len(other) == 1 else 'differ'}"
-        raise DatasetError(f"{path}: belongs to another sweep ({differs}); expected the same call, or a new name")
+        differs = f"belongs to another sweep (it differs in {' and '.join(other)})"
+        raise DatasetError(f"{path}: {differs}; expected the same call, or a new name")
     return store
 
 

@@ -1,0 +1,24 @@
+"""A small sweep that the tests of this folder share; also imported by the processes that they start."""
+
+import numpy as np
+import pandas as pd
+
+import tendonlab as tl
+
+TIME = np.arange(0.0, 1.0, 0.005)
+VALUES = {"inertia": 0.02, "gravity_torque": 0.5, "torque_constant": 1.0, "coulomb": 0.05, "viscous": 0.03}
+SIM = tl.System(kind="rigid_joint", parameters=VALUES, effects=("joint:coulomb", "joint:viscous"))
+TABLE = pd.DataFrame({"coulomb": [0.02, 0.0, 0.1, 0.05], "inertia": [0.01, 0.02, 0.03, 0.02]})
+
+
+def pushed(time: np.ndarray = TIME, *, amplitude: float = 0.4) -> pd.DataFrame:
+    return pd.DataFrame({"motor_torque": amplitude * np.sin(6.0 * time)}, index=pd.Index(time, name="t"))
+
+
+def extremes(chunk: np.ndarray) -> np.ndarray:
+    """Two numbers per point, of the first output."""
+    return np.stack([chunk[:, 0].min(axis=-1), chunk[:, 0].max(axis=-1)], axis=1)
+
+
+def many(num_points: int) -> pd.DataFrame:
+    return pd.DataFrame({"coulomb": np.linspace(0.0, 0.1, num_points), "viscous": np.linspace(0.02, 0.04, num_points)})
