@@ -19,7 +19,8 @@ from tendonlab.simulation.system import System, require_system
 UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
 UNSAMPLED = "Signs, scales and lags could not be checked: {kind} has no equation of motion."
 UNEXPLAINED = (
-    "Lags could not be checked: the equation of motion leaves {share:.0f} % of what it predicts, with any one factor."
+    "Lags could not be checked: the simulator's equation of motion does not describe these logs, "
+    "with any one factor on a channel."
 )
 
 
@@ -49,6 +50,6 @@ def _by_the_equation(equation: Equation, logs: Logs) -> tuple[list[Finding], lis
         return factor_findings(factors, dataset), []
     late = lags(equation, logs)
     if late.level > EXPLAINED:
-        return [], [UNEXPLAINED.format(share=100 * late.level)]
+        return [], [UNEXPLAINED]
     step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))
     return clock_findings(late, [e.name for e in dataset.experiments], dataset.inputs, step), []

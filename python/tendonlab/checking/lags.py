@@ -48,6 +48,8 @@ def lags(equation: Equation, logs: Logs) -> Lags:
             moved = moved.earlier(name, by)
         at = terms(equation, moved.at(kept))
         fit = at.fit(share)
+        if not np.isfinite(fit.cost):
+            return Lags(channels, late, sd, np.zeros(late.shape), np.inf)
         share = shares(fit.residual, logs.run[kept])
         slopes = _slopes(equation, moved, kept, channels, at)
         own, belief = _with_friction(equation, moved.at(kept), at, slopes)
@@ -123,6 +125,8 @@ def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
     kept, num = _regular(logs, SCANNED), len(equation.dataset.experiments)
     at = terms(equation, logs.at(kept))
     fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
+    if not np.isfinite(fit.cost):
+        return np.zeros(num)
     changed, scale = fit.residual - at.residual, (fit.level * at.size)[:, None]
     shortest = min(e.duration for e in equation.dataset.experiments)
     most = max(1.0, min(LONGEST, PART * shortest) / logs.step)

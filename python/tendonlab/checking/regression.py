@@ -38,6 +38,13 @@ class Fit:
     strain: float
 
 
+def impossible(num: int, residual: np.ndarray) -> Fit:
+    """The fit where there is none: its cost is infinite."""
+    infinite = np.full(len(residual), np.inf)
+    return Fit(np.inf, np.zeros(num), np.full(num, np.inf), infinite, residual, np.inf)
+
+
+@np.errstate(all="ignore")
 def fit(
     residual: np.ndarray,
     columns: np.ndarray,
@@ -63,7 +70,10 @@ def fit(
         root = np.sqrt(weight * (share / level**2)[:, None])
         rows = (t * growth(x, unknowns)[:, None, None] * root).reshape(len(x), -1)
         information = rows @ rows.T + np.diag(belief)
-        step = _solve(information, rows @ (r * root).ravel() + belief * x, x, positive)
+        gradient = rows @ (r * root).ravel() + belief * x
+        if not (np.isfinite(information).all() and np.isfinite(gradient).all()):
+            return impossible(len(x), residual)
+        step = _solve(information, gradient, x, positive)
         step = np.clip(step, -longest, longest)
         x = x + step
         r = r0 + np.tensordot(_amount(x, logarithm), t, axes=1)

@@ -41,6 +41,8 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     rough = logs.thinned(ROUGH)
     share = np.full(len(equation.predicted), ROUGH_SHARE)
     plain = terms(equation, rough).fit(share)
+    if not np.isfinite(plain.cost):
+        return []
     if np.all(plain.level < SUSPECT) and plain.strain < STRAINED:
         return []
     searched = [_searched(equation, rough, signals, sign, share) for signals, sign in _suspects(equation)]
@@ -57,7 +59,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
     judged = sorted((replace(f, gain=base.cost - f.fit.cost) for f in polished), key=lambda f: f.fit.cost)
     best = judged[0]
-    if best.gain < LEAST_GAIN or not _blocks(best.value) or best.fit.level[0] > EXPLAINED:
+    if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level > EXPLAINED):
         return []
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
 

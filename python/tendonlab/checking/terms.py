@@ -9,7 +9,7 @@ import numpy as np
 
 from tendonlab.checking.equation import Equation, Stretch
 from tendonlab.checking.logs import Logs
-from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown, fit, growth
+from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown, fit, growth, impossible
 from tendonlab.data import NominalParameter
 from tendonlab.fitting.priors import DAMPING_LOG_SD, LOG_SD
 from tendonlab.simulation.catalog import ParameterInfo
@@ -36,10 +36,14 @@ class Terms:
         return np.asarray(self.columns * growth(x, self.unknowns)[:, None, None])
 
     def fit(self, share: np.ndarray, *, steps: int = MOST_STEPS) -> Fit:
-        """The most probable unknowns; `share` of the samples of each equation counts as independent."""
+        """The most probable unknowns; `share` of the samples of each equation counts as independent. Of infinite cost
+        where the equations have no value, as far beyond what a simulator was made for."""
+        if not np.isfinite(self.residual).all():
+            return impossible(len(self.unknowns), self.residual)
         return fit(self.residual, self.columns, self.unknowns, self.size, share, steps=steps)
 
 
+@np.errstate(all="ignore")  # wrong logs may lead anywhere; what has no value is left out
 def terms(equation: Equation, logs: Logs) -> Terms:
     """The regression of `equation` on `logs`."""
     stretches = equation.along(logs)
@@ -60,7 +64,7 @@ def terms(equation: Equation, logs: Logs) -> Terms:
         moved = equation.evaluate(stretches, len(logs.run), parameter=k, nudge=nudge)
         rows.append(_believed(p, stated, (moved - residual) / nudge / size[:, None], size))
     rows += [*zeros, *_extras(equation, logs, size)]
-    seen = [(u, c) for u, c in rows if np.any(c)]
+    seen = [(u, c) for u, c in rows if np.any(c) and np.isfinite(c).all()]
     columns = np.array([c for _, c in seen]).reshape(len(seen), *residual.shape)
     return Terms(residual, columns, tuple(u for u, _ in seen), size)
 
