@@ -80,11 +80,11 @@ def _gain(p: ParameterInfo, stated: NominalParameter, residual: np.ndarray, sile
 def _size(
     equation: Equation, logs: Logs, residual: np.ndarray, silent: np.ndarray, stiffness: dict[str, np.ndarray]
 ) -> np.ndarray:
-    """Rms of what the inputs contribute to the first equation, an axis to its own, and an output to its own."""
+    """Rms of what the inputs contribute to the first equation and an axis to its own; what an output varies."""
     sizes = [rms((residual - silent)[0])]
     for k, name in enumerate(equation.moved[1:], start=1):
         sizes.append(rms(stiffness[name][k] * logs.moving[name][0]))
-    sizes += [rms(logs.others[name]) for name in equation.others]
+    sizes += [float(np.std(logs.others[name])) for name in equation.others]
     return np.array([size or rms(residual[k]) or 1.0 for k, size in enumerate(sizes)])
 
 
