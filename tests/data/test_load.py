@@ -106,14 +106,12 @@ def test_linear_axis_takes_newtons_and_metres(draft, write):
     np.testing.assert_allclose(frame["joint_angle"], raw["q"] * 1e-3)
 
 
-@pytest.mark.parametrize(
-    ("unit", "kept", "factor"), [("A", "A", 1), ("mV", "V", 1e-3), ("mA", "A", 1e-3), ("1", "1", 1)]
-)
-def test_command_with_a_torque_constant_is_in_ampere_or_volt(draft, write, unit, kept, factor):
+@pytest.mark.parametrize(("unit", "kept", "si"), [("A", "A", 1.0), ("mV", "V", 1e-3), ("mA", "A", 1e-3), ("1", "1", 1)])
+def test_command_with_a_torque_constant_is_in_ampere_or_volt(draft, write, unit, kept, si):
     """torque_constant carries N m per A, per V or per 1, whatever multiple of it the file has."""
     draft.toml["signals"]["motor_torque"]["unit"] = unit
     dataset = load(write(draft))
-    expected = factor * draft.frames["one.csv"]["u"]
+    expected = si * draft.frames["one.csv"]["u"]
     np.testing.assert_allclose(dataset["one"].data["motor_torque"], expected, rtol=1e-12)
     assert dataset.signals["motor_torque"].si_unit == kept
 
