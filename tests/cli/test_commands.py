@@ -110,6 +110,22 @@ def test_simulate_takes_values_and_effects(tiny: Path, tmp_path: Path) -> None:
     pd.testing.assert_frame_equal(written, sim.simulate(rig["run-1"]).outputs, rtol=1e-8)
 
 
+def test_sweep_takes_a_grid_or_a_table(capsys: Printed, tiny: Path, tmp_path: Path) -> None:
+    assert (
+        main(["sweep", str(tiny), "--grid", "inertia=0.4,0.5", "viscous=0.3:0.5:3", "--reduce", "rms", "--quiet"]) == 0
+    )
+    printed = capsys.readouterr()
+    assert "6 runs, 0 failed" in printed.out
+    assert printed.err == ""
+    (tmp_path / "points.csv").write_text("inertia,viscous\n0.4,0.3\n0.5,0.4\n")
+    table = ["--points", str(tmp_path / "points.csv"), "--out", str(tmp_path / "runs.zarr"), "--quiet"]
+    assert main(["sweep", str(tiny), *table]) == 0
+    assert "2 runs, 0 failed" in capsys.readouterr().out
+    assert (tmp_path / "runs.zarr" / "joint_angle").is_dir()
+    assert main(["sweep", str(tiny), "--grid", "inertia=much"]) == 2
+    assert "--grid inertia=much: expected NAME=VALUE,VALUE,..." in capsys.readouterr().err
+
+
 def test_identify_finds_the_parameters_and_prints_nothing_else(tiny: Path, tmp_path: Path) -> None:
     """The solver and its logging are guests: stderr stays empty."""
     done = run("identify", tiny, "--quiet", "--out", tmp_path / "fit.json", cwd=tmp_path)

@@ -61,7 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"tendonlab {__version__}")
     commands = _commands(parser, dest="command", metavar="COMMAND")
-    for add in (_add_demo, _add_check, _add_diagnose, _add_identify, _add_simulate):
+    for add in (_add_demo, _add_check, _add_diagnose, _add_identify, _add_simulate, _add_sweep):
         add(commands)
     for add in (_add_effects, _add_systems, _add_datasets):
         add(commands)
@@ -124,6 +124,18 @@ def _add_simulate(commands: Any) -> None:
     _add_effect_names(parser)
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameter values, SI")
     parser.add_argument("--out", type=Path, metavar="FILE.csv", help="write t and every simulated output here")
+
+
+def _add_sweep(commands: Any) -> None:
+    parser = _command(commands, "sweep", _sweep, "simulate an experiment at many values of the parameters")
+    parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
+    points = parser.add_mutually_exclusive_group(required=True)
+    points.add_argument("--grid", nargs="+", metavar="NAME=VALUES", help="as in coulomb=0.1,0.2 viscous=0.01:0.05:9")
+    points.add_argument("--points", type=Path, metavar="FILE.csv", help="one point per row, one column per parameter")
+    parser.add_argument("--experiment", metavar="NAME", help="default: the first held-out one")
+    parser.add_argument("--reduce", metavar="SUMMARY", help="a number per run, such as rms, instead of samples")
+    parser.add_argument("--out", metavar="FOLDER", help="store here; the name ends in .zarr or .parquet")
+    _add_progress(parser)
 
 
 def _add_effects(commands: Any) -> None:
@@ -238,6 +250,22 @@ def _simulate(given: Arguments) -> int:
     print(errors_text(run, experiment))
     if given.out is not None:
         run.outputs.to_csv(given.out, index_label="t", float_format="%.9g")
+        print(f"\nWritten: {given.out}")
+    return 0
+
+
+def _sweep(given: Arguments) -> int:
+    from tendonlab.cli.sweep import grid_from, sweep_text, table_from
+    from tendonlab.data import load
+    from tendonlab.sweeping.sweep import sweep
+
+    rig = load(_folder(given.dataset))
+    experiment = _experiment(rig, given.experiment)
+    points = table_from(given.points) if given.grid is None else grid_from(given.grid)
+    kept = {"reduce": given.reduce, "out": given.out, "progress": not given.quiet}
+    swept = sweep(rig.system(), points, experiment=experiment, **kept)
+    print(f"{rig.name}, {experiment.name} ({experiment.split})\n\n{sweep_text(swept)}")
+    if given.out is not None:
         print(f"\nWritten: {given.out}")
     return 0
 

@@ -1,0 +1,54 @@
+"""The command `sweep`: its points from the command line, and a summary of what they gave."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tendonlab.cli.text import table
+from tendonlab.errors import DatasetError, ParameterError
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+def grid_from(texts: Sequence[str]) -> dict[str, np.ndarray]:
+    """A grid from "name=1,2,3" or "name=first:last:number". Raises ParameterError for any other text."""
+    return {name: _axis(text, values) for text in texts for name, _, values in [text.partition("=")]}
+
+
+def _axis(text: str, values: str) -> np.ndarray:
+    try:
+        if ":" not in values:
+            return np.array([float(value) for value in values.split(",")])
+        first, last, number = values.split(":")
+        return np.linspace(float(first), float(last), int(number))
+    except ValueError:
+        expected = "NAME=VALUE,VALUE,... or NAME=FIRST:LAST:NUMBER, such as joint_coulomb=0.03:0.06:5"
+        raise ParameterError(f"--grid {text}: expected {expected}") from None
+
+
+def table_from(file: Path) -> pd.DataFrame:
+    """The table of points in a CSV file. Raises DatasetError where there is none."""
+    import pandas as pd
+
+    try:
+        return pd.read_csv(file)
+    except ValueError as error:
+        raise DatasetError(f"{file}: expected a table with one column per parameter; {error}") from error
+
+
+def sweep_text(swept: xr.Dataset) -> str:
+    """How many runs went well, why others failed, and the range of each variable."""
+    messages = swept["message"].to_numpy().ravel()
+    failed = sorted({str(m) for m in messages if m})
+    lines = [f"{messages.size} runs, {int((messages != '').sum())} failed", *(f"  {text}" for text in failed[:5])]
+    rows = [["", "smallest", "largest", "unit"]]
+    for name, values in swept.data_vars.items():
+        ends = (f"{float(values.min()):.6g}", f"{float(values.max()):.6g}")
+        rows.append([str(name), *ends, str(values.attrs.get("unit", ""))])
+    return "\n".join([*lines, "", table(rows, right=(1, 2))])
