@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,12 @@ from sweeps import SIM, TABLE, TIME, extremes, pushed
 import tendonlab as tl
 from tendonlab.sweeping import chunk
 
+PROCESSES = ProcessPoolExecutor(1)  # no task is sent to it: it starts no process
 LONG, SHORT = pushed(), pushed(TIME[:77], amplitude=0.6)
+
+
+def message(runs: np.ndarray) -> np.ndarray:
+    return runs
 
 
 def swept(**given: Any) -> Any:
@@ -88,6 +94,11 @@ def test_outputs_and_precision_are_those_asked_for() -> None:
         (
             {"reduce": lambda c: c[0]},
             r"reduce = reduced: gave shape \(2, 200\) of float64 for 1 points; expected .* \(1,",
+        ),
+        ({"reduce": message}, "reduce = message: a coordinate of the result; expected another name"),
+        (
+            {"reduce": lambda c: c, "executor": PROCESSES},
+            "reduce = reduced: .*; expected a function defined",
         ),
         ({"outputs": ["joint_angl"]}, r"outputs\[0\] = 'joint_angl': did you mean 'joint_angle'"),
         ({"outputs": "joint_angle"}, "outputs = 'joint_angle': expected a list of names"),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import pickle
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,21 @@ class Reduction:
 
     name: str
     function: Reduce | None = None
+
+    def require_portable(self) -> None:
+        """Raise ParameterError for a function that cannot be sent to another process."""
+        try:
+            pickle.dumps(self.function)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            expected = "a function defined at the top of a module, which other processes can import"
+            raise ParameterError(f"reduce = {self.name}: {error}; expected {expected}") from error
+
+    def require_free_name(self, taken: Iterable[str]) -> None:
+        """Raise ParameterError for a function that is named as a coordinate of the result."""
+        if self.function is not None and self.name in taken:
+            raise ParameterError(
+                f"reduce = {self.name}: the result has a coordinate of that name; expected another name"
+            )
 
     @property
     def by_output(self) -> bool:

@@ -19,7 +19,7 @@ def chunk_size(first: Chunk, num_runs: int, workers: Workers, *, on_disk: bool) 
     num = len(first.messages)
     size = (TASK_SECONDS if travels else THREAD_SECONDS) * num / max(first.seconds, 1e-9)
     if travels:
-        size = min(size, MOST_BYTES * num / first.kept.nbytes)
+        size = min(size, MOST_BYTES * num / max(first.kept.nbytes, 1))
     if workers.shares_memory:  # every thread has work to the end
         size = min(size, num_runs / (4 * workers.num))
     return max(1, int(size))

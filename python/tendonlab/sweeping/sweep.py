@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import replace
 from itertools import chain, repeat
@@ -72,8 +72,10 @@ def sweep(
     fix, a value outside its bounds or given twice, an axis without values, or anything but a System; DatasetError for
     a missing input or a store of another sweep; NumericalError where every point failed."""
     require_system(system)
-    target = checked_out(out)
-    layout = _layout(system, grid, experiment, outputs, reduction_of(reduce), dtype)
+    target, reduction = checked_out(out), reduction_of(reduce)
+    if reduction is not None and isinstance(executor, ProcessPoolExecutor):
+        reduction.require_portable()
+    layout = _layout(system, grid, experiment, outputs, reduction, dtype)
     channels = [[s.name for s in system.info.outputs].index(name) for name in layout.outputs]
     runs = [run_of(system, e, layout.points, channels=channels, tolerance=tolerance) for e in layout.experiments]
     with workers_of(executor) as workers:
@@ -97,6 +99,8 @@ def _layout(
     require_allowed(system, points)
     several = isinstance(experiment, Iterable) and not isinstance(experiment, Experiment | pd.DataFrame | str | Mapping)
     experiments = _experiments(experiment) if several else (as_experiment(experiment),)
+    if reduction is not None:
+        reduction.require_free_name(("message", "experiment", "point", "t", *points.names))
     keep = Keep(reduction, choice("dtype", dtype, DTYPES), max(len(e.data) for e in experiments))
     return Layout(system, points, experiments, several, _outputs(system, outputs), keep)
 
