@@ -95,7 +95,7 @@ def test_outputs_and_precision_are_those_asked_for() -> None:
             {"reduce": lambda c: c[0]},
             r"reduce = reduced: gave shape \(2, 200\) of float64 for 1 points; expected .* \(1,",
         ),
-        ({"reduce": message}, "reduce = message: a coordinate of the result; expected another name"),
+        ({"reduce": message}, "reduce = message: the result has a coordinate of that name"),
         (
             {"reduce": lambda c: c, "executor": PROCESSES},
             "reduce = reduced: .*; expected a function defined",
