@@ -6,13 +6,21 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset
+from tendonlab.fitting.noise import noise_of
 from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.system import System
 
+UNEXPLAINED, SHOWN = 0.1, 10.0  # share of the effort that no model explains, and by how many times the noise it shows
+RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection
+
 
 def choose_replay(dataset: Dataset, system: System) -> Replay:
-    """Free run with the known controller; else injection at a bandwidth half of the one that holds 95 % of the measured
-    motion's power (the same for every model); else, without a measured motor, the logged command alone."""
+    """Free run with the known controller; else injection, the same for every model; else, without a measured motor, the
+    logged command alone.
+
+    The injection is so stiff that an effort of 10 % of the command's, which no model explains, moves the simulated
+    sensor by ten times its noise: stiffer, and the effects drown in that noise; softer, and what no model explains
+    adds up. At least half of the bandwidth that holds 95 % of the motion's power, at most what the samples resolve."""
     controller = dataset.controller
     if controller is not None:
         return Replay("controller", controller.kp, controller.kd, controller.measured)
@@ -22,10 +30,17 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
         return Replay("free")
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
     moved = [(e.time, e.data[first].to_numpy(dtype=float)) for e in dataset.train if first in e.data.columns]
-    rates = [2 * np.pi * _frequency_below(time, values) for time, values in moved if np.isfinite(values).any()]
-    if not rates:
+    moved = [(time, values) for time, values in moved if np.isfinite(values).any()]
+    if not moved:
         return Replay("free")
-    omega = 0.5 * float(np.median(rates))
+    slowest = 0.5 * float(np.median([2 * np.pi * _frequency_below(time, values) for time, values in moved]))
+    fastest = RESOLVED * float(np.median([(len(time) - 1) / (time[-1] - time[0]) for time, _ in moved]))
+    commanded = np.concatenate(
+        [e.data[command].to_numpy(dtype=float) for e in dataset.train if command in e.data.columns]
+    )
+    command_rms = float(np.sqrt(np.nanmean(np.square(commanded))))
+    noise = noise_of(dataset.signals[first], [values for _, values in moved])
+    omega = max(slowest, min(fastest, float(np.sqrt(UNEXPLAINED / SHOWN * command_rms / (inertia * noise)))))
     return Replay("injection", float(inertia * omega**2), float(1.4 * inertia * omega), first)
 
 
