@@ -152,7 +152,7 @@ def test_overwhelming_evidence_gives_probabilities(trial: Callable[..., Trial]) 
 
 
 def test_effects_that_are_not_established_rank_behind_none(trial: Callable[..., Trial]) -> None:
-    bar = Bar(evidence=10.0, left_out=3.0, steady=0.0)
+    bar = Bar(evidence=10.0, left_out=3.0, doubted=False)
     trials = [trial(STRIBECK, 500.0), trial("joint:coulomb", 30.0), trial(ASYMMETRY, 5.0)]
     established = probabilities(trials, {t.effect for t in trials if bar.passed(t)}, bar, temperature=4.0)
     assert sum(established.values()) == pytest.approx(1.0)

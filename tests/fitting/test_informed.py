@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab._core import Free, RandomEffect
+from tendonlab._core import Free
 from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.problem import Problem
 from tendonlab.fitting.uncertainty import informed
@@ -36,11 +36,12 @@ class Clipped(Problem):
     def linearise(self) -> Fitted:
         gain, limit = (self.system.parameters[name] for name in ("gain", "limit"))
         rows = np.array([[u, 0.0, 0.0] if gain * u < limit else [0.0, 1.0, 0.0] for u in (1.0, 2.0)])
-        run = Run(np.zeros(2), rows, np.zeros(2), RandomEffect(np.zeros((2, 0))), np.zeros(2, dtype=int))
+        nothing, first = np.zeros((2, 0)), np.zeros(2, dtype=int)
+        run = Run(residual=np.zeros(2), jacobian=rows, by_own=nothing, own=np.zeros(0), output=first, block=first)
         return Fitted(
             added=(), system=self.system, free=self.free, x=np.zeros(3), initial=((),), runs=(run,),
             at_bound=(False,) * 3, informed=tuple(informed([rows], self.free).tolist()), cost=0.0, prior_cost=0.0,
-            converged=False, message="", num_iterations=0,
+            converged=False, message="", num_iterations=0, levels=np.ones(1), known=np.ones(1), shares=np.ones(1),
         )  # fmt: skip
 
 

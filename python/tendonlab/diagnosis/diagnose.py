@@ -12,7 +12,7 @@ from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.diagnosis.answer.answer import answer
 from tendonlab.diagnosis.fault import data_fault
-from tendonlab.diagnosis.floor import rough_fit, under_noise_floor
+from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
 from tendonlab.diagnosis.search.select import select_effects
 from tendonlab.diagnosis.search.workshop import open_workshop
 from tendonlab.errors import ParameterError
@@ -59,6 +59,7 @@ def diagnose(
         initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
         nominal = fitter.fit(case.system, initial=initial, known=True, solve=any(initial))  # any: there may be none
         tuned = fitter.fit(rough.system, initial=initial)
+        fitter, tuned = renewed(fitter, tuned, shop.pool)
         search = select_effects(fitter, tuned, shop)
         log.info("selected %s", search.selected)
         why = answer(search, nominal, seed=seed, seconds=lambda: time.monotonic() - began)

@@ -36,15 +36,11 @@ def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cance
 def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:
     """The fitter for the search beyond `model`, and the model refitted under it.
 
-    Repeats determine the noise once and for all. Without them, noise is the residual of the best model so far."""
+    Repeats determine the noise once and for all. Without them, noise is what each model leaves."""
     if fitter.floor.repeated:
         return fitter, model
-    case = fitter.case
-    seen = _sensitivities(case, model, pool)
-    residual = estimate(case, seen, case.train)
-    floor = replace(fitter.floor, sd=residual.sd, effective=residual.effective)
-    fitter = Fitter(case, floor, fitter.cancel, seen)
-    return fitter, fitter.fit(model.system, added=model.added, initial=model.initial)
+    model = fitter.settled(model)
+    return replace(fitter.left_by(model), seen=_sensitivities(fitter.case, model, pool)), model
 
 
 def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list[Sensitivities]:

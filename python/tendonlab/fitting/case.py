@@ -11,7 +11,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.data import Dataset, Experiment
 from tendonlab.errors import NumericalError
-from tendonlab.fitting.noise import sensor_noise
+from tendonlab.fitting.noise import blocks_of, sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
@@ -56,6 +56,15 @@ class Case:
         splits = ["train" if i in experiments else "unused" for i in range(len(self.experiments))]
         chosen = (replace(e, split=s) for e, s in zip(self.experiments, splits, strict=True))
         return replace(self, experiments=tuple(chosen))
+
+    def on_half(self, *, odd: bool) -> Case:
+        """The same case with every other block of 2 s of each experiment measured, the odd or the even ones."""
+
+        def half(i: int, ready: Prepared) -> Prepared:
+            kept = (blocks_of(self.experiments[i].time) + i) % 2 == odd
+            return replace(ready, measured=np.where(kept, ready.measured, np.nan))
+
+        return replace(self, prepared=tuple(half(i, ready) for i, ready in enumerate(self.prepared)))
 
     def beginning(self, i: int) -> Case:
         """The first 0.2 s of experiment i alone, to fit, without run-to-run factors."""

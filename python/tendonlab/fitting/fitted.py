@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from tendonlab import _core
 from tendonlab._core import Free
-from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS, Uncertainty, uncertainty
+from tendonlab.fitting.noise import integrated_time
+from tendonlab.fitting.uncertainty import Uncertainty, uncertainty
 from tendonlab.simulation.system import System
 
 
@@ -26,19 +27,16 @@ class Score:
 
 @dataclass(frozen=True)
 class Run:
-    """One training experiment at the fit: whitened `residual` (rows,); `jacobian` (rows, free) by the coordinates, the
-    experiment's own unknowns marginalised as the random `effect` about their prior means, by which the residual lies
-    `shift` higher; the `block` of 2 s of each row."""
+    """One training experiment at the fit: whitened `residual` (rows,); its derivatives `jacobian` (rows, free) by the
+    coordinates and `by_own` (rows, unknowns) by the experiment's own unknowns, which ended at `own`; the output and the
+    `block` of 2 s of each row."""
 
     residual: np.ndarray
     jacobian: np.ndarray
-    shift: np.ndarray
-    effect: _core.RandomEffect
+    by_own: np.ndarray
+    own: np.ndarray
+    output: np.ndarray
     block: np.ndarray
-
-    def marginal(self, residual: np.ndarray) -> np.ndarray:
-        """Whitened residuals of this experiment, its own unknowns marginalised."""
-        return self.effect.whiten(residual - self.shift)
 
     def parts(self) -> list[np.ndarray]:
         """Rows of each block of 2 s, as masks."""
@@ -46,11 +44,34 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Marginal:
+    """A run whose rows count with their `weight`, its own unknowns marginalised as the random `effect` about their
+    prior means, by which the residual lies `shift` higher."""
+
+    weight: np.ndarray
+    shift: np.ndarray
+    effect: _core.RandomEffect
+    jacobian: np.ndarray
+
+    @classmethod
+    def of(cls, run: Run, shares: np.ndarray) -> Marginal:
+        """The rows of each output count as their share in `shares` of as many independent ones."""
+        weight = np.sqrt(shares[run.output])
+        effect = _core.RandomEffect(weight[:, None] * run.by_own)
+        return cls(weight, run.by_own @ run.own, effect, effect.whiten(weight[:, None] * run.jacobian))
+
+    def residual(self, whitened: np.ndarray) -> np.ndarray:
+        """Whitened residuals of this run as they count."""
+        return self.effect.whiten(self.weight * (whitened - self.shift))
+
+
+@dataclass(frozen=True)
 class Fitted:
     """A model fitted to the training experiments. `added`: effects beyond the nominal ones. `initial`: own unknowns of
     each training experiment. `informed`: whether any residual depends on a free parameter. `cost`: half the sum of
-    squared residuals, priors included; `prior_cost`: the priors' part. `effective`: share of the rows that count as
-    independent."""
+    squared residuals, priors included; `prior_cost`: the priors' part. Of each output: `levels`, sd of the noise under
+    which the rows were whitened; `known`, the part of it that does not depend on the model; `shares`, share of the rows
+    that count as independent."""
 
     added: tuple[str, ...]
     system: System
@@ -65,13 +86,26 @@ class Fitted:
     converged: bool
     message: str
     num_iterations: int
-    effective: float = 1.0
+    levels: np.ndarray
+    known: np.ndarray
+    shares: np.ndarray
+
+    def counted(self, shares: np.ndarray | None = None) -> Fitted:
+        """The same fit whose rows count as these `shares` of independent ones, without them as all."""
+        shares = np.ones_like(self.levels) if shares is None else shares
+        return self if np.array_equal(shares, self.shares) else replace(self, shares=shares)
+
+    @cached_property
+    def marginals(self) -> tuple[Marginal, ...]:
+        """The runs as they count."""
+        return tuple(Marginal.of(run, self.shares) for run in self.runs)
 
     @cached_property
     def blocks(self) -> tuple[Score, ...]:
-        """What is left out at a time: an experiment; where there are few, contiguous parts of 2 s."""
+        """What is left out at a time: contiguous parts of 2 s. Whole experiments would be too much: often one alone
+        determines a parameter, and without that one a Newton step leads nowhere."""
         rows = [self.split(t, run.residual) for t, run in enumerate(self.runs)]
-        slopes = [_parts(run.jacobian, self._masks(run)) for run in self.runs]
+        slopes = [_parts(of.jacobian, run.parts()) for of, run in zip(self.marginals, self.runs, strict=True)]
         return tuple(
             Score(residual, jacobian, t)
             for t in range(len(self.runs))
@@ -80,11 +114,13 @@ class Fitted:
 
     def split(self, t: int, residual: np.ndarray) -> list[np.ndarray]:
         """Whitened residuals of training experiment t, its own unknowns marginalised as in this fit, in blocks."""
-        run = self.runs[t]
-        return _parts(run.marginal(residual), self._masks(run))
+        return _parts(self.marginals[t].residual(residual), self.runs[t].parts())
 
-    def _masks(self, run: Run) -> list[np.ndarray]:
-        return run.parts() if len(self.runs) < FEWEST_EXPERIMENTS else [np.ones(len(run.residual), dtype=bool)]
+    def by_experiment(self, scores: np.ndarray) -> np.ndarray:
+        """Scores of blocks summed over each training experiment; one alone keeps them block by block."""
+        if len(self.runs) == 1:
+            return scores
+        return np.bincount([b.experiment for b in self.blocks], scores, minlength=len(self.runs))
 
     @cached_property
     def precision(self) -> np.ndarray:
@@ -95,20 +131,32 @@ class Fitted:
     def evidence(self) -> float:
         """Laplace log evidence, up to what all models share."""
         away = (self.x - np.array([f.mean for f in self.free])) ** 2 * self._prior
-        misfit = self.effective * sum(float(b.residual @ b.residual) for b in self.blocks)
+        misfit = sum(float(b.residual @ b.residual) for b in self.blocks) + sum(self._spreads)
         sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
         _, volume = np.linalg.slogdet(np.eye(len(sd)) + sd[:, None] * self._information * sd)
-        own = sum(run.effect.volume for run in self.runs)
+        own = sum(of.effect.volume for of in self.marginals)
         return float(-0.5 * (misfit + np.sum(away) + volume + own))
 
     @cached_property
     def left_out(self) -> np.ndarray:
         """Predictive log score of each block when it is left out: one Newton step without it."""
-        scores = []
-        for b in self.blocks:
-            predicted = b.residual + b.jacobian @ self._step_without([b])
-            scores.append(-0.5 * self.effective * float(predicted @ predicted))
-        return np.array(scores)
+        steps = (self._step_without([b]) for b in self.blocks)
+        return self._scores([b.residual + b.jacobian @ step for b, step in zip(self.blocks, steps, strict=True)])
+
+    @property
+    def scores(self) -> np.ndarray:
+        """Log score of each block as it was fitted."""
+        return self._scores([b.residual for b in self.blocks])
+
+    def _scores(self, residuals: Sequence[np.ndarray]) -> np.ndarray:
+        misfit = np.array([float(r @ r) for r in residuals])
+        return np.asarray(-0.5 * (misfit + np.array(self._spreads)))
+
+    @cached_property
+    def _spreads(self) -> list[float]:
+        """Of each block: what the logarithms of the noise cost, sum of 2 log sd over the rows as they count."""
+        cost = 2.0 * self.shares * np.log(np.where(self.levels > 0, self.levels, 1.0))
+        return [float(cost[run.output[mask]].sum()) for run in self.runs for mask in run.parts()]
 
     def leaving_out(self, experiment: int) -> System:
         """The model fitted without one training experiment, by one Newton step; itself where there is no other."""
@@ -121,9 +169,9 @@ class Fitted:
     def _step_without(self, blocks: Sequence[Score]) -> np.ndarray:
         """How the coordinates move when some blocks are left out: one Newton step; what is at a bound stays there."""
         moving = ~np.array(self.at_bound, dtype=bool)
-        known = self.precision - self.effective * sum(b.jacobian.T @ b.jacobian for b in blocks)
+        known = self.precision - sum(b.jacobian.T @ b.jacobian for b in blocks)
         known += 1e-9 * np.diag(np.diag(self.precision))
-        pull = self.effective * sum(b.jacobian.T @ b.residual for b in blocks)
+        pull = sum(b.jacobian.T @ b.residual for b in blocks)
         step = np.zeros(len(self.x))
         step[moving] = np.linalg.solve(known[np.ix_(moving, moving)], np.asarray(pull)[moving])
         return step
@@ -135,17 +183,47 @@ class Fitted:
 
     @cached_property
     def mean_square(self) -> float:
-        """Of the whitened residuals: 1 where the model explains all but the floor."""
-        rows = sum(len(b.residual) for b in self.blocks)
-        return sum(float(b.residual @ b.residual) for b in self.blocks) / rows
+        """Of the residuals in units of the known noise: 1 where the model explains all but that."""
+        if np.array_equal(self.levels, self.known):
+            rows = sum(len(b.residual) for b in self.blocks)
+            return sum(float(b.residual @ b.residual) for b in self.blocks) / rows
+        scale = self.levels / np.where(self.known > 0, self.known, 1.0)
+        return float(np.mean(np.square(np.concatenate([run.residual * scale[run.output] for run in self.runs]))))
+
+    @cached_property
+    def whitened_square(self) -> float:
+        """Mean square of the residuals in units of the noise under which they were fitted."""
+        return float(np.mean(np.square(np.concatenate([run.residual for run in self.runs]))))
+
+    @cached_property
+    def own_levels(self) -> np.ndarray:
+        """Of each output: rms residual, at least the known noise; what was not measured stays."""
+        rows = [(run.output, run.residual) for run in self.runs]
+        outputs, residuals = (np.concatenate(part) for part in zip(*rows, strict=True))
+        count = np.bincount(outputs, minlength=len(self.levels))
+        square = np.bincount(outputs, np.square(residuals), minlength=len(self.levels)) / np.maximum(count, 1)
+        return np.where(count > 0, np.maximum(np.sqrt(square) * self.levels, self.known), self.levels)
+
+    @cached_property
+    def own_shares(self) -> np.ndarray:
+        """Of each output: share of its rows that count as independent, by the memory of their residuals."""
+        memory = [
+            np.mean([integrated_time(run.residual[run.output == c]) for run in self.runs if np.any(run.output == c)])
+            if any(np.any(run.output == c) for run in self.runs)
+            else 1.0
+            for c in range(len(self.levels))
+        ]
+        return 1.0 / np.array(memory)
 
     @cached_property
     def uncertainty(self) -> Uncertainty:
         """Sd and 95 % interval of each free parameter, and the correlations of the coordinates."""
-        marginal = [(run.marginal(run.residual), run.jacobian, run.parts()) for run in self.runs]
-        return uncertainty(
-            marginal, self.free, self.x, at_bound=self.at_bound, informed=self.informed, effective=self.effective
-        )
+        rows = [
+            (of.residual(run.residual), of.jacobian, run.parts())
+            for of, run in zip(self.marginals, self.runs, strict=True)
+        ]
+        count = sum(float(np.sum(of.weight**2)) for of in self.marginals)
+        return uncertainty(rows, self.free, self.x, at_bound=self.at_bound, informed=self.informed, count=count)
 
     def value(self, name: str) -> tuple[float, tuple[float, float]]:
         """Fitted value of a free parameter and its 95 % interval."""
@@ -160,7 +238,7 @@ class Fitted:
     @cached_property
     def _information(self) -> np.ndarray:
         width = len(self.free)
-        return self.effective * sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width)))
+        return np.asarray(sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width))))
 
 
 def _parts(rows: np.ndarray, masks: Sequence[np.ndarray]) -> list[np.ndarray]:

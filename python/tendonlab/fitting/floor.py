@@ -2,8 +2,8 @@
 
 Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
 explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats
-nothing tells noise from what the model lacks: then all of a residual counts as noise, with as few independent samples
-as its memory leaves, and is judged anew after each effect that was selected."""
+nothing tells noise from what the model lacks: then the level of the noise is a parameter of each model, at least that
+of the sensors, and a sample counts as the memory of the best model's residuals leaves."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import Floor, integrated_time
+from tendonlab.fitting.noise import Floor
 from tendonlab.simulation.system import System
 
 AR_ORDER = 6
@@ -119,15 +119,11 @@ def _shared(times: Sequence[np.ndarray]) -> list[np.ndarray]:
 
 def _without_repeats(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
     rms, sd = np.full(len(case.noise), np.nan), np.zeros(len(case.noise))
-    memory = np.ones(len(case.noise))
     for c in case.measured:
-        records = [seen[i].residual[c] for i in fitted]
         rms[c] = _assumed(case, seen, c)
-        sd[c] = max(_rms(records), float(case.noise[c]))
-        memory[c] = np.mean([integrated_time(r[np.isfinite(r)]) for r in records])
-    mean = float(np.mean(memory[case.measured]))
-    weighed = sd * np.sqrt(memory / mean)  # a channel that varies more slowly says less
-    return Floor(rms, [[] for _ in sd], weighed.tolist(), RUN_TO_RUN, repeated=False, effective=1.0 / mean)
+        sd[c] = max(_rms([seen[i].residual[c] for i in fitted]), float(case.noise[c]))
+    known = tuple(float(s) if np.isfinite(s) else 0.0 for s in case.noise)
+    return Floor(rms, [[] for _ in sd], sd.tolist(), RUN_TO_RUN, repeated=False, known=known)
 
 
 def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> list[_core.Whitening]:

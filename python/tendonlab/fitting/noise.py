@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.errors import DatasetError
 from tendonlab.simulation.prepare import Prepared
+from tendonlab.simulation.records import SignalSpec
 from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
@@ -24,15 +25,32 @@ class Floor:
 
     `rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and innovation
     sd of each output (sd 0: not measured). `tau`: relative sd of friction from run to run. `repeated`: whether repeats
-    say so. `effective`: share of the whitened samples that count as independent; decisions weigh them by it, fits do
-    not."""
+    say so; without them `sd` is what a model leaves, of which `known` is due to the sensors. `shares`: share of the
+    whitened samples of each output that count as independent; decisions weigh them by it, fits do not."""
 
     rms: np.ndarray
     ar: list[list[float]]
     sd: list[float]
     tau: float
     repeated: bool
-    effective: float = 1.0
+    known: tuple[float, ...] | None = None
+    shares: tuple[float, ...] | None = None
+
+    @property
+    def levels(self) -> np.ndarray:
+        """Sd of each output, 0 where it was not measured."""
+        return np.array(self.sd, dtype=float)
+
+    def left_by(self, levels: np.ndarray, shares: np.ndarray) -> Floor:
+        """The floor where a model leaves residuals of these levels."""
+        return replace(self, sd=levels.tolist(), shares=tuple(shares.tolist()))
+
+    def reached_by(self, rms: np.ndarray) -> Floor:
+        """Without repeats the plain floor is assumed: an error `rms` of each output that a model reached on held-out
+        experiments lowers it, to the sensors' noise at the least."""
+        if self.known is None:
+            return self
+        return replace(self, rms=np.maximum(np.minimum(self.rms, rms), np.where(np.isfinite(self.rms), self.known, 0)))
 
     def whitening(
         self, measured: np.ndarray, directions: np.ndarray | None = None, spread: Sequence[float] = ()
@@ -55,16 +73,20 @@ def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared])
     for c, output in enumerate(outputs):
         signal = dataset.signals.get(output.name)
         records = [e.measured[c] for e in prepared if np.isfinite(e.measured[c]).any()]
-        if signal is None or not records:
-            continue
-        rounding = (signal.resolution or 0.0) / np.sqrt(12.0)
-        smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
-        stated = signal.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
-        noise[c] = max(stated, rounding, smallest) or 1.0
+        if signal is not None and records:
+            noise[c] = noise_of(signal, records)
     if np.isnan(noise).all():
         names = ", ".join(output.name for output in outputs)
         raise DatasetError(f"{dataset.name}: no output of {system.kind} was measured; expected one of {names}")
     return noise
+
+
+def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
+    """Sd of the white noise of one output, from its records; see `sensor_noise`."""
+    rounding = (signal.resolution or 0.0) / np.sqrt(12.0)
+    smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
+    stated = signal.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
+    return max(stated, rounding, smallest) or 1.0
 
 
 def white(noise: np.ndarray) -> Floor:

@@ -1,5 +1,5 @@
 """What is free in a fit and what is believed of it beforehand: the user's `sd`, else the library's defaults, scaled to
-the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 1.5 of their unit, shapes 0.7 in log)."""
+the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 3 of their unit, shapes 0.7 in log)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tendonlab.simulation.catalog import DIMENSIONS, ParameterInfo
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
-LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 1.5
+LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 3.0
 
 
 @dataclass(frozen=True)

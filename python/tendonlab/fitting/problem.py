@@ -96,20 +96,20 @@ class Problem:
             converged=solved["converged"],
             message=solved["message"],
             num_iterations=solved["iterations"],
-            effective=self.floor.effective,
+            levels=self.floor.levels,
+            known=np.array(self.floor.known) if self.floor.known else self.floor.levels,
+            shares=np.array(self.floor.shares) if self.floor.shares else np.ones(len(self.floor.sd)),
         )
 
     def _run(self, i: int, t: int, solved: dict[str, Any]) -> Run:
         ready = self.case.prepared[i]
-        _, samples = self.floor.whitening(ready.measured).cells()
-        by_own = solved["jacobian_initial"][t]
-        own = (np.array(solved["initial"][t]) - self.case.own_mean(i)) / self.case.own_sd(i)
-        effect = _core.RandomEffect(by_own)
+        outputs, samples = self.floor.whitening(ready.measured).cells()
         return Run(
             residual=solved["residuals"][t],
-            jacobian=effect.whiten(solved["jacobian"][t]),
-            shift=by_own @ own,
-            effect=effect,
+            jacobian=solved["jacobian"][t],
+            by_own=solved["jacobian_initial"][t],
+            own=(np.array(solved["initial"][t]) - self.case.own_mean(i)) / self.case.own_sd(i),
+            output=outputs,
             block=blocks_of(np.asarray(ready.core.time))[samples],
         )
 
@@ -121,6 +121,9 @@ def initial_state(case: Case, system: System, i: int) -> tuple[float, ...]:
     if not mean or not np.isfinite(first.prepared[0].measured[case.measured]).any():
         return mean
     return Problem(case=first, floor=white(case.noise), system=system).solve(max_iterations=10).initial[0]
+
+
+NUM_RELEVELLED, SAME_LEVEL = 3, 0.05  # refits under the noise that a fit leaves, and the change that is none
 
 
 @dataclass(frozen=True)
@@ -156,6 +159,35 @@ class Fitter:
         if not solve:
             return problem.linearise()
         return problem.solve(cancel=self.cancel, max_iterations=max_iterations, tolerance=tolerance, goal=goal)
+
+    def settled(self, fit: Fitted) -> Fitted:
+        """Without repeats: the fit again under the noise that it leaves itself, until that stays, or its evidence
+        falls. Its rows count by the memory of its own residuals."""
+        if self.floor.repeated:
+            return fit
+        for _ in range(NUM_RELEVELLED):
+            if np.allclose(fit.own_levels, fit.levels, rtol=SAME_LEVEL):
+                break
+            own = replace(self.floor, sd=fit.own_levels.tolist())
+            again = replace(self, floor=own).fit(fit.system, added=fit.added, initial=fit.initial)
+            if not again.counted().evidence > fit.counted().evidence:
+                break
+            fit = again
+        return fit.counted(fit.own_shares)
+
+    def releveled(self, fit: Fitted) -> Fitted:
+        """Without repeats: the fit as it is, under the noise that it leaves itself."""
+        if self.floor.repeated:
+            return fit
+        own = replace(self.floor, sd=fit.own_levels.tolist())
+        there = replace(self, floor=own).fit(fit.system, added=fit.added, initial=fit.initial, solve=False)
+        return there.counted(there.own_shares)
+
+    def left_by(self, model: Fitted) -> Fitter:
+        """The fitter whose floor is what `model` leaves; itself where repeats determine the floor."""
+        if self.floor.repeated:
+            return self
+        return replace(self, floor=self.floor.left_by(model.levels, model.shares))
 
     def under(self, level: float) -> Fitter:
         """The same under noise of `level` times the power, for fits to the training experiments."""

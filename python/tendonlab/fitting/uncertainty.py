@@ -41,9 +41,9 @@ def uncertainty(
     *,
     at_bound: Sequence[bool],
     informed: Sequence[bool],
-    effective: float = 1.0,
+    count: float | None = None,
 ) -> Uncertainty:
-    """Uncertainty of a fit that ended at `x`, whose rows `runs` count as the share `effective` of independent ones.
+    """Uncertainty of a fit that ended at `x`, whose rows `runs` count as `count` independent ones; without it, each row as one.
 
     Covariance H^-1 (B + P) H^-1: H is the curvature with priors, P the priors' part of it, B the sum of g g' over
     clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and with four experiments
@@ -54,11 +54,12 @@ def uncertainty(
     known = np.asarray(informed, dtype=bool)
     inside = known & ~np.asarray(at_bound, dtype=bool)
     precision = np.array([0.0 if np.isinf(f.sd) else f.sd**-2.0 for f in free])
-    covariances = _covariances(runs, precision, inside, effective)
+    count = float(sum(len(residual) for residual, _, _ in runs)) if count is None else count
+    covariances = _covariances(runs, precision, inside, count)
     sd = np.array([f.sd for f in free])
     half = stats.norm.ppf(0.975) * sd
     if (known & ~inside).any():
-        sd[known], half[known] = _spread(_covariances(runs, precision, known, effective))
+        sd[known], half[known] = _spread(_covariances(runs, precision, known, count))
     sd[inside], half[inside] = _spread(covariances)
     correlations = np.eye(len(free))
     last, _ = covariances[min(1, len(covariances) - 1)]
@@ -68,19 +69,18 @@ def uncertainty(
 
 
 def _covariances(
-    runs: Sequence[Marginal], precision: np.ndarray, inside: np.ndarray, effective: float
+    runs: Sequence[Marginal], precision: np.ndarray, inside: np.ndarray, count: float
 ) -> list[tuple[np.ndarray, float]]:
     """Of the coordinates `inside`, others fixed: for independent residuals, blocks, and experiments where there are
     enough of them; each with its number of clusters."""
     prior = np.diag(precision[inside])
     slopes = [jacobian[:, inside] for _, jacobian, _ in runs]
-    information = effective * sum((j.T @ j for j in slopes), np.zeros_like(prior))
+    information = sum((j.T @ j for j in slopes), np.zeros_like(prior))
     bread = _inverse(information + prior)
-    rows = effective * sum(len(residual) for residual, _, _ in runs)
-    misfit = effective * sum(float(residual @ residual) for residual, _, _ in runs)
-    size = max(1.0, misfit / max(1.0, rows - int(inside.sum())))
-    found = [(bread @ (size * information + prior) @ bread, rows)]
-    scores = [effective * j * residual[:, None] for j, (residual, _, _) in zip(slopes, runs, strict=True)]
+    misfit = sum(float(residual @ residual) for residual, _, _ in runs)
+    size = max(1.0, misfit / max(1.0, count - int(inside.sum())))
+    found = [(bread @ (size * information + prior) @ bread, count)]
+    scores = [j * residual[:, None] for j, (residual, _, _) in zip(slopes, runs, strict=True)]
     blocks = [score[part].sum(axis=0) for score, (_, _, parts) in zip(scores, runs, strict=True) for part in parts]
     found.append((_sandwich(bread, prior, blocks), len(blocks)))
     if len(runs) >= FEWEST_EXPERIMENTS:

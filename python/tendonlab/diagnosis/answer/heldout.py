@@ -101,8 +101,9 @@ def predictive_gain(
     for k, i in enumerate(experiments):
         a = whitening[i].residual(before.outputs[k])
         b = whitening[i].residual(after.outputs[k])
-        _, samples = whitening[i].cells()
+        outputs, samples = whitening[i].cells()
+        share = np.array(floor.shares)[outputs] if floor.shares else 1.0
         block = blocks_of(case.experiments[i].time)[samples]
-        gains += list(0.5 * floor.effective * np.bincount(block, a**2 - b**2))
+        gains += list(0.5 * np.bincount(block, share * (a**2 - b**2)))
     spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else abs(float(np.sum(gains)))
     return {"mean": float(np.sum(gains)), "se": spread}

@@ -60,7 +60,8 @@ def _separation(case: Case, floor: Floor, first: Fitted, second: Fitted, motion:
     seeds = [("parameter", f.index) for f in first.free]
     a = _run(case, first, motion, loop, seeds)
     b = _run(case, second, motion, loop, [])
-    weight = floor.rms[case.measured][:, None] / np.sqrt(floor.effective)
+    shares = np.array(floor.shares)[case.measured] if floor.shares else np.ones(len(case.measured))
+    weight = (floor.rms[case.measured] / np.sqrt(shares))[:, None]
     d = ((a["outputs"] - b["outputs"])[case.measured] / weight).ravel()
     slopes = np.array([f.slope(x) for f, x in zip(first.free, first.x, strict=True)])
     j = (a["gradient"][:, case.measured] / weight).reshape(len(seeds), -1).T * slopes

@@ -18,6 +18,8 @@ from tendonlab.fitting.problem import Fitter
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
+TWIN = 3.0  # nats within which two effects say the same of these data
+FURTHER_SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove without repeats
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor
 MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this share of the acceptance bar
 
@@ -47,7 +49,7 @@ class Round:
         accepted: Trial | None,
     ) -> Round:
         """The round of `trials`, best first, of which one, or none, is accepted."""
-        temperature = TEMPERATURE * max([1.0, min((t.fitted.mean_square for t in trials), default=1.0)])
+        temperature = TEMPERATURE * max([1.0, min((t.fitted.whitened_square for t in trials), default=1.0)])
         probability = probabilities(trials, established, bar, temperature)
         return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established)
 
@@ -69,18 +71,29 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     trials = shop.refit_all(fitter, base, chosen, label)
     established = {t.effect for t in trials if bar.passed(t)}
     leader = trials[0] if trials and trials[0].effect in established else None
-    if leader and not _worth_adding(fitter, base, leader, further=further):
+    if leader and not _worth_adding(fitter, base, trials, further=further):
         leader, established = None, set()
     return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader)
 
 
-def _worth_adding(fitter: Fitter, base: Fitted, trial: Trial, *, further: bool) -> bool:
+def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:
     """Near the floor, which a few repeats determine to a few per cent, an effect must remove a share of the error that
     matters. Near the floor and beyond the first effect, it must predict experiments that it was not fitted to."""
-    near_floor = base.mean_square < NEAR_FLOOR
-    if near_floor and fitter.floor.repeated and trial.fitted.mean_square > (1 - MATTERS) * base.mean_square:
+    near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
+    if near_floor and first.mean_square > (1 - MATTERS) * base.mean_square:
         return False
-    return not (near_floor or further) or predicts_better(fitter, base, trial.fitted)
+    if not fitter.floor.repeated and not _explains_enough(base, trials):
+        return False
+    return not (near_floor or further) or predicts_better(fitter, base, first)
+
+
+def _explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
+    """Whether the first trial removes half of what the base leaves above the sensors' noise; a third where no other
+    gains half as much. The error of a shape looks like one more effect, which removes less."""
+    rest, left = base.mean_square - 1.0, trials[0].fitted.mean_square - 1.0
+    most = trials[0].evidence_gain
+    alone = all(t.evidence_gain < 0.5 * most or most - t.evidence_gain < TWIN for t in trials[1:])
+    return left < rest * (1.0 - (ALONE_SHARE if alone else FURTHER_SHARE))
 
 
 def probabilities(

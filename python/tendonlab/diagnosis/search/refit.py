@@ -22,26 +22,29 @@ COOLED = 0.01  # relative change of the cost at which a cooling ends: all that c
 Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
 
 
-def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, rival_gain: float | None) -> Fitted | None:
+def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | None) -> Fitted | None:
     """The best fit of `base` with the candidate over its starts, None where no fit succeeds.
 
-    A fit that lies far behind `rival_gain`, the evidence gain of a rival, is not finished."""
+    `pace`: evidence of a rival, all rows counted; a fit that lies far behind is not finished."""
     best: Fitted | None = None
     for values in candidate.starts if candidate.simulated else ():
-        fit = _fit(fitter, base, {candidate.effect: values}, best, rival_gain=rival_gain)
-        best = more_evident(best, fit)
-    if strained(fitter, base) and (best is None or best.mean_square > NEAR_FLOOR):
-        values = candidate.starts[0]
-        fit = _fit(fitter, base, {candidate.effect: values}, best, rival_gain=rival_gain, from_nominal=True)
+        best = more_evident(best, _fit(fitter, base, {candidate.effect: values}, best, pace=pace))
+    if _may_be_trapped(fitter, base) and (best is None or best.mean_square > NEAR_FLOOR):
+        fit = _fit(fitter, base, {candidate.effect: candidate.starts[0]}, best, pace=pace, from_nominal=True)
         best = more_evident(best, fit)
     return best
+
+
+def _may_be_trapped(fitter: Fitter, base: Fitted) -> bool:
+    """Whether fits that start at the tuned values may end where other parameters compensate for the effect."""
+    return not fitter.floor.repeated or strained(fitter, base)
 
 
 def more_evident(best: Fitted | None, fit: Fitted | None) -> Fitted | None:
     """Whichever of two fits has more evidence. A fit whose derivatives exploded has none that counts."""
     if fit is None or not math.isfinite(fit.evidence):
         return best
-    return fit if best is None or fit.evidence > best.evidence else best
+    return fit if best is None or fit.counted().evidence > best.counted().evidence else best
 
 
 def _fit(
@@ -50,31 +53,37 @@ def _fit(
     effect: Values,
     best: Fitted | None,
     *,
-    rival_gain: float | None,
+    pace: float | None,
     from_nominal: bool = False,
 ) -> Fitted | None:
     """`base` refitted with `effect`, None where that fails; only a sketch where it lies far behind the rival or `best`.
 
     `from_nominal`: start at the nominal values of the simulator instead of the tuned ones."""
     added = (*base.added, *effect)
-    enough = _evidence_to_reach(base, best, rival_gain)
+    goal = _goal(fitter, base, best, pace)
     try:
         system, initial = base.system.with_effects(effect), base.initial
         if from_nominal:
             system, initial = _cooled(fitter, base, system, added)
-        goal = base.cost - (enough - base.evidence) / base.effective
         fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH, goal=goal)
-        if not (fit.converged or fit.evidence < enough):
+        if fit.cost > goal:
+            return fitter.releveled(fit)
+        if not fit.converged:
             fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=40)
+        return fitter.settled(fit)
     except (NumericalError, ParameterError):
         return None
-    return fit
 
 
-def _evidence_to_reach(base: Fitted, best: Fitted | None, rival_gain: float | None) -> float:
-    """The evidence below which a sketch lies too far behind the rival or the best fit so far."""
-    rival = -math.inf if rival_gain is None else base.evidence + CATCH_UP * rival_gain
-    return rival if best is None else max(rival, best.evidence - BEHIND)
+def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float | None) -> float:
+    """The cost above which a sketch lies too far behind the rival or the best fit so far."""
+    here = base.counted().evidence
+    rival = -math.inf if pace is None else CATCH_UP * (pace - here)
+    needed = rival if best is None else max(rival, best.counted().evidence - BEHIND - here)
+    if fitter.floor.repeated:
+        return base.cost - needed
+    rows = sum(len(run.residual) for run in base.runs)  # a gain under noise of one's own, in cost under the base's
+    return base.cost * math.exp(-2.0 * needed / rows)
 
 
 def strained(fitter: Fitter, base: Fitted) -> bool:
@@ -93,13 +102,13 @@ def _cooled(
     stated = fitter.case.dataset.parameters
     system = system.with_parameters({f.name: f.value(f.mean) for f in base.free if f.name in stated})
     fit = fitter.fit(system, added=added, solve=False)
-    misfit = fit.mean_square
+    misfit = fit.whitened_square
     for _ in range(NUM_COOLINGS):
         level = max(1.0, misfit)
         fit = fitter.under(level).fit(
             fit.system, added=added, initial=fit.initial, max_iterations=SKETCH, tolerance=COOLED
         )
-        misfit = level * fit.mean_square
+        misfit = level * fit.whitened_square
         if misfit > 0.5 * level or misfit < NEAR_FLOOR:
             break
     return fit.system, fit.initial

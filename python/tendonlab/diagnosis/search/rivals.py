@@ -80,7 +80,7 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
 
 def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place:
     rest = tuple(name for name in base.added if name != effect)
-    others = fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial)
+    others = fitter.settled(fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial))
     holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
     label = f"instead of {effect}"
     screened = shop.screen_all(fitter, others, label)
@@ -124,7 +124,10 @@ def _rival_and_one_more(fitter: Fitter, base: Fitted, rival: Trial, places: Plac
     if round_ is None or round_.accepted is None:
         return None
     pair = round_.accepted.fitted
-    clear = pair.evidence - base.evidence > bar_for_further_effect(fitter, largest_gain(places)).evidence
+    clear = (
+        pair.evidence - base.counted(pair.shares).evidence
+        > bar_for_further_effect(fitter, largest_gain(places)).evidence
+    )
     if not clear or not predicts_better(fitter, base, pair):
         return None
     return Improved(pair, Place(rival.fitted, round_.accepted, round_))

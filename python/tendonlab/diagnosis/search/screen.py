@@ -105,7 +105,7 @@ def _score(
     residuals = [b.residual for b in base.blocks]
     moved = _residuals_with(fitter, base, effect, values)
     directions = [(m - r) / amplitude for m, r in zip(moved, residuals, strict=True)]
-    dd, dr, jd, jr = (base.effective * total for total in _products(base, directions))
+    dd, dr, jd, jr = _products(base, directions)
     imitation = np.linalg.solve(base.precision, jd)  # of the direction by the free parameters
     slope, curvature = float(dr - imitation @ jr), max(float(dd - imitation @ jd), 0.0)
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)

@@ -97,6 +97,8 @@ def _add_effects(state: _Extended, tuned: Fitted, shop: Workshop) -> _Extended:
 def _models_before(fitter: Fitter, model: Fitted) -> list[Fitted]:
     """The models between the refitted simulator and `model`, effect by effect."""
     return [
-        fitter.fit(drop_effects(fitter, model, model.added[k:]), added=model.added[:k], initial=model.initial)
+        fitter.settled(
+            fitter.fit(drop_effects(fitter, model, model.added[k:]), added=model.added[:k], initial=model.initial)
+        )
         for k in range(1, len(model.added))
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,50 +10,69 @@ import numpy as np
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
+STEADY, LOSSES = 2.0, 5.0
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One refitted candidate against the model it extends: gains in nats."""
+    """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain."""
 
     effect: str
     fitted: Fitted
     evidence_gain: float
     left_out_gain: float
-    left_out_se: float
+    doubt: float
 
     @classmethod
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
-        """What `fitted`, which has `effect`, gains over `base`, which has not."""
-        gains = fitted.left_out - base.left_out
-        spread = float(np.std(gains, ddof=1) * np.sqrt(len(gains))) if len(gains) > 1 else float("inf")
-        return cls(effect, fitted, fitted.evidence - base.evidence, float(np.sum(gains)), spread)
+        """What `fitted`, which has `effect`, gains over `base`, which has not; rows count as in `fitted`."""
+        base = base.counted(fitted.shares)
+        gains = fitted.by_experiment(fitted.left_out - base.left_out)
+        return cls(effect, fitted, fitted.evidence - base.evidence, float(np.sum(gains)), doubt(gains))
+
+
+def doubt(gains: np.ndarray) -> float:
+    """By how much the sum of gains of single experiments may deceive: two standard errors, at most `LOSSES` times what
+    experiments lose. A right effect that one run alone shows costs the others nothing."""
+    if len(gains) < 2:
+        return float("inf")
+    errors = STEADY * float(np.std(gains, ddof=1) * np.sqrt(len(gains)))
+    return min(errors, LOSSES * float(-np.minimum(gains, 0.0).sum()))
+
+
+def counted_alike(trials: Sequence[Trial], base: Fitted) -> list[Trial]:
+    """The trials, best first, with the rows of all counted as the residuals of the best model leave."""
+    if not trials:
+        return []
+    shares = max(trials, key=lambda t: t.fitted.counted().evidence).fitted.shares
+    alike = [Trial.of(t.effect, t.fitted.counted(shares), base) for t in trials]
+    return sorted(alike, key=lambda trial: -trial.evidence_gain)
 
 
 @dataclass(frozen=True)
 class Bar:
-    """What an effect must gain to be established: evidence, and log score of left-out experiments, the latter also by
-    `steady` standard errors."""
+    """What an effect must gain to be established: evidence, and log score of left-out experiments; `doubted`: the
+    latter beyond its doubt."""
 
     evidence: float
     left_out: float
-    steady: float
+    doubted: bool
 
     def passed(self, trial: Trial) -> bool:
         """Whether the trial establishes its effect."""
-        left_out = max(self.left_out, self.steady * trial.left_out_se)
+        left_out = max(self.left_out, trial.doubt if self.doubted else 0.0)
         return trial.evidence_gain > self.evidence and trial.left_out_gain > left_out
 
 
-DETECT = Bar(evidence=10.0, left_out=3.0, steady=0.0)
+DETECT = Bar(evidence=10.0, left_out=3.0, doubted=False)
 
 
 def bar_for_further_effect(fitter: Fitter, largest_gain: float) -> Bar:
     """The bar for an effect beyond the first, which may only imitate what is wrong with the shape of the first.
 
-    `largest_gain`: the most evidence that an effect has gained so far. Without repeats the noise floor already contains
-    the error of the shape."""
+    `largest_gain`: the most evidence that an effect has gained so far. Without repeats the noise of each model already
+    contains the error of its shape."""
     if not fitter.floor.repeated:
-        return Bar(DETECT.evidence, DETECT.left_out, 2.0)
-    return Bar(max(FURTHER_EVIDENCE, FURTHER_SHARE * largest_gain), FURTHER_LEFT_OUT, 2.0)
+        return Bar(DETECT.evidence, DETECT.left_out, doubted=True)
+    return Bar(max(FURTHER_EVIDENCE, FURTHER_SHARE * largest_gain), FURTHER_LEFT_OUT, doubted=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from tendonlab import _core
 from tendonlab.diagnosis.search.refit import refit
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
-from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.diagnosis.search.trial import Trial, counted_alike
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
@@ -29,7 +29,8 @@ class Workshop:
     def screen_all(self, fitter: Fitter, base: Fitted, label: str) -> list[Screened]:
         """All candidates as the screen sees them, most promising first."""
         names = [c for c in candidates(fitter.case, base) if self.library is None or c in self.library]
-        work = self.pool.map(lambda name: screen(fitter, base, name), names)
+        all_rows = base.counted()  # the memory of the base's residuals would hide every lead
+        work = self.pool.map(lambda name: screen(fitter, all_rows, name), names)
         shown = track(work, label=f"screen {label}", total=len(names), unit="effect", shown=self.progress, stays=False)
         return sorted(shown, key=lambda screened: -screened.gain)
 
@@ -38,17 +39,17 @@ class Workshop:
     ) -> list[Trial]:
         """The chosen candidates refitted, best first. The first sets the pace for the others, unless there is an
         `incumbent`: a trial that is fitted already."""
-        first = [incumbent] if incumbent else _tried(fitter, base, chosen[0], rival_gain=None) if chosen else []
-        rival_gain = max((t.evidence_gain for t in first), default=0.0)
+        first = [incumbent] if incumbent else _tried(fitter, base, chosen[0], pace=None) if chosen else []
+        pace = max((t.fitted.counted().evidence for t in first), default=None)
         rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
-        work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, rival_gain=rival_gain), rest)
+        work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
         shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
         trials = [*first, *(trial for tried in shown for trial in tried)]
-        return sorted(trials, key=lambda trial: -trial.evidence_gain)
+        return counted_alike(trials, base)
 
 
-def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, rival_gain: float | None) -> list[Trial]:
-    fit = refit(fitter, base, candidate, rival_gain=rival_gain)
+def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | None) -> list[Trial]:
+    fit = refit(fitter, base, candidate, pace=pace)
     return [Trial.of(candidate.effect, fit, base)] if fit else []
 
 

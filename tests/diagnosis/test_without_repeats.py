@@ -1,0 +1,61 @@
+"""A rig of which no experiment was repeated: what is missing is named, and nothing where nothing is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tendonlab as tl
+
+pytestmark = pytest.mark.slow
+RATE, DURATION, NOISE = 100.0, 8.0, 1e-4
+VALUES = {"inertia": 0.0125, "gravity_torque": 0.85, "torque_constant": 1.0, "coulomb": 0.06, "viscous": 0.02}
+RIG = tl.System(kind="rigid_joint", parameters=VALUES, effects=("joint:coulomb", "joint:viscous"))
+STRIBECK = {"joint:stribeck": {"static_excess": 0.05, "stribeck_velocity": 0.06}}
+STATED = {"inertia": (0.012, 0.001), "gravity_torque": (0.9, 0.1), "coulomb": (0.05, 0.02), "viscous": (0.018, 0.005)}
+RUNS = {"slow": (0.15, 0.9), "fast": (0.8, 0.6), "middle": (0.4, 0.8), "held-out": (0.55, 0.7)}
+
+
+def write(folder: Path, rig: tl.System, *, seed: int) -> tl.Dataset:
+    """Logs of `rig` under a torque that nearly carries a sine, with a noisy angle; a simulator of other values."""
+    random = np.random.default_rng(seed)
+    time = np.arange(0.0, DURATION, 1.0 / RATE)
+    text = 'format = "tendonlab-dataset/1"\nname = "rig"\ntime = { column = "t", unit = "s" }\n'
+    text += (
+        '[system]\nkind = "rigid_joint"\nnominal_effects = ["joint:coulomb", "joint:viscous"]\n[system.parameters]\n'
+    )
+    text += "".join(f"{name} = {{ value = {value}, sd = {sd} }}\n" for name, (value, sd) in STATED.items())
+    text += "torque_constant = { value = 1.0, sd = 0.0 }\n[signals]\n"
+    text += 'motor_torque = { column = "u", unit = "N*m" }\njoint_angle = { column = "q", unit = "rad" }\n'
+    for name, (frequency, reach) in RUNS.items():
+        path, rate = reach * np.sin(2 * np.pi * frequency * time), 2 * np.pi * frequency * reach
+        rate = rate * np.cos(2 * np.pi * frequency * time)
+        torque = 0.85 * np.sin(path) + 0.12 * np.tanh(rate / 0.02) + 0.03 * rate
+        given = pd.DataFrame({"motor_torque": torque}, index=pd.Index(time, name="t"))
+        angle = rig.simulate(given, tolerance=1e-8)["joint_angle"].to_numpy()
+        noisy = angle + NOISE * random.standard_normal(len(time))
+        pd.DataFrame({"t": time, "u": torque, "q": noisy}).to_csv(folder / f"{name}.csv", index=False)
+        split = "test" if name == "held-out" else "train"
+        text += f'[[experiments]]\nname = "{name}"\nfile = "{name}.csv"\nsplit = "{split}"\n'
+    (folder / "dataset.toml").write_text(text)
+    return tl.load(folder)
+
+
+@pytest.mark.cpu(120)
+def test_what_is_missing_is_established(tmp_path: Path) -> None:
+    why = tl.diagnose(write(tmp_path, RIG.with_effects(STRIBECK), seed=3), progress=False)
+    assert why.selected == ("joint:stribeck",)
+    assert why.verdict == "effect"
+    values = why.effects[0].parameters
+    assert values["static_excess"]["value"] == pytest.approx(0.05, rel=0.15)
+    assert values["stribeck_velocity"]["value"] == pytest.approx(0.06, rel=0.15)
+
+
+@pytest.mark.cpu(120)
+def test_nothing_is_named_where_nothing_is_missing(tmp_path: Path) -> None:
+    why = tl.diagnose(write(tmp_path, RIG, seed=4), progress=False)
+    assert why.selected == ()
+    assert why.verdict in ("no_gap", "parameters_only")
