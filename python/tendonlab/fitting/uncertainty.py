@@ -43,7 +43,7 @@ def uncertainty(
     informed: Sequence[bool],
     count: float | None = None,
 ) -> Uncertainty:
-    """Uncertainty of a fit that ended at `x`, whose rows `runs` count as `count` independent ones; without it, each row as one.
+    """Uncertainty of a fit that ended at `x`, whose rows `runs` count as `count` independent ones (default: all).
 
     Covariance H^-1 (B + P) H^-1: H is the curvature with priors, P the priors' part of it, B the sum of g g' over
     clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and with four experiments
