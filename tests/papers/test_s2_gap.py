@@ -71,18 +71,15 @@ HOLDS = ["stiction:hold", "joint:coulomb", "joint:viscous", "gear:ripple", "bush
 
 
 @pytest.mark.slow
-def test_a_hold_is_told_from_everything_but_friction_of_the_joint(tmp_path: Path) -> None:
+def test_a_hold_is_told_from_friction_of_the_joint(tmp_path: Path) -> None:
     """Whatever keeps the joint from creeping back holds the sense: stiction of the guides, and dry friction of the
-    joint. Without repeats these logs cannot tell, and the diagnosis says so, and what would."""
+    joint. Their residuals differ although nothing repeats: each candidate is judged by the noise that it leaves."""
     rig = s2.write_dataset(tmp_path, RIG, hold=True)
     found = diagnose(rig, library=HOLDS)
     assert found.verdict == "effect"
     assert list(found.selected) == ["stiction:hold"]
-    assert found.indistinguishable == (("stiction:hold", "joint:coulomb"),)
+    assert not found.indistinguishable
     assert found.shrinkage["from_refitted"]["value"] > 0.8
-    (proposal,) = found.next_experiments
-    assert {"stiction:hold", "joint:coulomb"} <= set(proposal["separates"])
-    assert "pushes on the resting joint" in proposal["description"]
 
 
 @pytest.mark.slow
