@@ -9,7 +9,7 @@ import pytest
 
 import tendonlab as tl
 from checking.pendulum import record
-from tendonlab.checking.spikes import outliers, without_outliers
+from tendonlab.checking.spikes import outliers, spikes, without_outliers
 from tendonlab.fitting.floor import _shared
 
 
@@ -43,6 +43,14 @@ def test_jumps_and_quick_motion_are_no_outliers(rate: int) -> None:
     assert not outliers(np.sin(20.0 * time) + noise).any()
     assert not outliers(np.sign(np.sin(3.0 * time)) + noise).any()
     assert not outliers(np.round(np.sin(3.0 * time), 2)).any()
+
+
+def test_a_spike_of_an_input_is_one_sample_alone() -> None:
+    """A pulse of two samples drives the rig, however small its first sample is."""
+    command = 1e-3 * np.random.default_rng(0).standard_normal(200)
+    command[50] += 1.0
+    command[120:122] += (0.1, 1.0)
+    assert np.flatnonzero(spikes(command)).tolist() == [50]
 
 
 def test_repeats_of_unequal_length_share_instants() -> None:

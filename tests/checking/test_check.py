@@ -39,22 +39,24 @@ def test_a_wrong_sign_has_two_suspects_on_a_single_joint(right: Logs, column: st
     assert found.factor == pytest.approx(-1.0, rel=0.1)  # the parameters are known to 10 %
 
 
-MISTAKES = {  # the logs, the guilty signal, and what is logged over what it should be
-    "degrees as radians": (lambda logs: logs.changed(angle=180 / np.pi), "joint_angle", 180 / np.pi),
-    "radians as degrees": (lambda logs: replace(logs, units=("s", "deg", "A")), "joint_angle", np.pi / 180),
-    "milliampere as ampere": (lambda logs: logs.changed(current=1000.0), "motor_torque", 1000.0),
-    "constant doubled": (lambda logs: replace(logs, constant=2 * CONSTANT), "motor_torque", 2.0),
-    "milliseconds as seconds": (lambda logs: logs.changed(time=1000.0), "time", 1000.0),
-    "seconds as milliseconds": (lambda logs: replace(logs, units=("ms", "rad", "A")), "time", 0.001),
+DEGREES, MILLI = "degrees and radians", "a prefix such as milli"
+MISTAKES = {  # the logs, the guilty signal, what is logged over what it should be, and the confusion that is suggested
+    "degrees as radians": (lambda logs: logs.changed(angle=180 / np.pi), "joint_angle", 180 / np.pi, DEGREES),
+    "radians as degrees": (lambda logs: replace(logs, units=("s", "deg", "A")), "joint_angle", np.pi / 180, DEGREES),
+    "milliampere as ampere": (lambda logs: logs.changed(current=1000.0), "motor_torque", 1000.0, MILLI),
+    "constant doubled": (lambda logs: replace(logs, constant=2 * CONSTANT), "motor_torque", 2.0, "a diameter and"),
+    "milliseconds as seconds": (lambda logs: logs.changed(time=1000.0), "time", 1000.0, MILLI),
+    "seconds as milliseconds": (lambda logs: replace(logs, units=("ms", "rad", "A")), "time", 0.001, MILLI),
 }
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_wrong_scale_is_found_with_its_factor(right: Logs, mistake: str, tmp_path: Path) -> None:
-    make, signal, factor = MISTAKES[mistake]
+    make, signal, factor, confusion = MISTAKES[mistake]
     (found,) = blocking(make(right), tmp_path)
     assert (found.problem, found.signal) == ("scale", signal)
     assert found.factor == pytest.approx(factor, rel=0.1)  # the parameters are known to 10 %
+    assert confusion in found.detail
 
 
 @pytest.mark.parametrize("seconds", [0.03, -0.05, 0.3])

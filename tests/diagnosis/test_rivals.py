@@ -10,9 +10,11 @@ from dataclasses import replace
 import pytest
 
 from tendonlab import _core
-from tendonlab.diagnosis.answer.verdict import marginals
+from tendonlab.diagnosis.answer.verdict import Levels, decide, marginals
+from tendonlab.diagnosis.search import workshop
 from tendonlab.diagnosis.search.contest import Round, next_effect, probabilities
 from tendonlab.diagnosis.search.rivals import Place, drop_effects, improve
+from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.fitted import Fitted
@@ -75,6 +77,19 @@ def test_as_many_effects_as_are_allowed_are_one_set(contest: Callable[..., Round
     assert {tuple(sorted(s["effects"])): round(s["probability"], 6) for s in sets} == {
         (ASYMMETRY, STRIBECK): 0.72, (ASYMMETRY,): 0.08, (STRIBECK,): 0.18,
     }  # fmt: skip
+
+
+def test_effects_that_are_nearly_as_probable_as_the_accepted_one_are_named_together(
+    contest: Callable[..., Round],
+) -> None:
+    """An effect alone is no group, nor are effects of which none was accepted."""
+    rounds = [
+        contest(STRIBECK, stribeck=0.5, delay=0.3, asymmetry=0.05, none=0.15),
+        contest(ASYMMETRY, STRIBECK, asymmetry=0.9, delay=0.05, none=0.05),
+        contest("", STRIBECK, ASYMMETRY, delay=0.4, none=0.6),
+    ]
+    levels = Levels(nominal=9.0, tuned=4.0, refitted=4.0, explained=0.9, repeated=True)
+    assert decide(rounds, (STRIBECK, ASYMMETRY), levels).indistinguishable == [[STRIBECK, DELAY]]
 
 
 def test_a_rival_is_the_best_other_trial_that_is_established_and_not_far_behind(
@@ -141,6 +156,24 @@ def test_progress_says_for_which_effect_candidates_are_screened(
         for added in ((), (STRIBECK,), (STRIBECK, DELAY)):
             assert next_effect(fitter, replace(nominal, added=added), largest_gain=0.0, shop=shop) is None
     assert labels == ["effect", "effect 2", "effect 3"]
+
+
+def test_a_trial_that_is_fitted_already_contests_and_is_not_fitted_once_more(
+    trial: Callable[..., Trial], fitter: Fitter, nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = []
+
+    def noted(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | None) -> list[Trial]:
+        tried.append(candidate.effect)
+        return [trial(candidate.effect, 20.0)]
+
+    monkeypatch.setattr(workshop, "_tried", noted)
+    chosen = [Screened(effect, 1.0, ({},), 1.0) for effect in (DELAY, STRIBECK, ASYMMETRY)]
+    with ThreadPoolExecutor(1) as pool:
+        shop = Workshop(pool, _core.Cancel(), progress=False, library=())
+        trials = shop.refit_all(fitter, nominal, chosen, "", incumbent=trial(STRIBECK, 30.0))
+    assert tried == [DELAY, ASYMMETRY]
+    assert sorted(t.effect for t in trials) == sorted([STRIBECK, DELAY, ASYMMETRY])
 
 
 def test_overwhelming_evidence_gives_probabilities(trial: Callable[..., Trial]) -> None:

@@ -198,6 +198,23 @@ def test_more_starts_agree_and_repeat(fit: Any) -> None:
     assert first.cost == pytest.approx(fit.cost, rel=1e-6)
 
 
+def test_further_starts_scatter_as_the_priors_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """About the nominal values, by the standard deviation that is stated."""
+    drawn: list[Problem] = []
+    starts = output_error._starts
+
+    def noted(problem: Problem, num_starts: int, rng: np.random.Generator) -> list[Problem]:
+        drawn.extend(starts(problem, num_starts, rng))
+        return drawn[:1]
+
+    monkeypatch.setattr(output_error, "_starts", noted)
+    identify(rig(gravity_torque=NominalParameter(1.0, 0.05)), num_starts=101, seed=1, progress=False)
+    values = np.array([start.system.parameters["gravity_torque"] for start in drawn])
+    assert len(values) == 101
+    assert np.mean(values) == pytest.approx(1.0, abs=0.015)
+    assert np.std(values) == pytest.approx(0.05, rel=0.2)
+
+
 def test_interrupt_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C while fits run, each of which waits for it: none can end before, however fast or busy the machine is."""
     solve = Problem.solve
