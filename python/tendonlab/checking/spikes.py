@@ -15,11 +15,42 @@ DEVIATIONS = 8.0  # robust standard deviations from the running median that make
 SPIKE = 25.0  # the same, of an input: what the controller did is no error
 BEND = 6.0  # times what the running median itself bends nearby
 RETURN = 0.2  # of a spike of an input, by which its neighbours may differ
+CORNER = 2.0  # times by how much the steps before and after a sample differ, within which it is a corner of the motion
+NEAR = (1, 2, 1)  # neighbours that tell the path, pass by pass: two outliers in a row hide one another from the nearest
 MOST = 0.03  # of a record: what is more frequent belongs to the signal
 
 
-def outliers(values: np.ndarray, *, deviations: float = DEVIATIONS) -> np.ndarray:
+def outliers(values: np.ndarray) -> np.ndarray:
     """Which samples of a record are outliers, shape (n,); NaN is none."""
+    found = _far_from_median(values, DEVIATIONS)
+    for near in NEAR:
+        kept = np.flatnonzero(np.isfinite(values) & ~found)
+        if len(kept) < 3 * WINDOW:
+            break
+        filled = np.interp(np.arange(len(values)), kept, values[kept])
+        found[np.intersect1d(_off_the_path(filled, near), kept)] = True
+    return found if found.mean() <= MOST else np.zeros_like(found)
+
+
+def _off_the_path(y: np.ndarray, near: int) -> np.ndarray:
+    """Which samples lie off the cubic through two neighbours on either side, the `near`-th ones and those behind them;
+    a corner of that path, or a jump in it, is none."""
+    from scipy.ndimage import median_filter
+
+    far = near + 1
+    inner, outer = far**2 / (far**2 - near**2), -(near**2) / (far**2 - near**2)  # the cubic at the middle
+    at = np.arange(far, len(y) - far)
+    left, right = y[at - near] - y[at - far], y[at + far] - y[at + near]
+    path = 0.5 * inner * (y[at - near] + y[at + near]) + 0.5 * outer * (y[at - far] + y[at + far])
+    jump = np.abs(y[at + near] - y[at - near] - near * (left + right))
+    away = np.abs(y[at] - path)
+    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="nearest"))
+    allowed = DEVIATIONS * np.fmax(noise, smallest_change(y)) + CORNER * np.abs(right - left) + jump
+    return np.asarray(at[away > allowed])
+
+
+def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
+    """Which samples are far from the running median, more than the median itself bends."""
     from scipy.ndimage import maximum_filter1d, median_filter
 
     kept = np.flatnonzero(np.isfinite(values))
@@ -38,7 +69,7 @@ def outliers(values: np.ndarray, *, deviations: float = DEVIATIONS) -> np.ndarra
 
 def spikes(values: np.ndarray) -> np.ndarray:
     """Outliers of an input: single samples after which it is back where it was. Jumps and pulses drive the rig."""
-    found = outliers(values, deviations=SPIKE)
+    found = _far_from_median(values, SPIKE)
     single = found.copy()
     single[1:] &= ~found[:-1]
     single[:-1] &= ~found[1:]

@@ -69,9 +69,10 @@ class PortRecords:
 def excess(case: Case, of: Replayed, floor: Floor) -> np.ndarray:
     """Mean over outputs of (residual / floor)², minus one, at each sample of all experiments together."""
     together = np.concatenate(of.residuals, axis=1)[case.measured]
-    return np.asarray(
-        np.nan_to_num(np.nanmean(np.square(together / floor.rms[case.measured, None]), axis=0), nan=1.0) - 1.0
-    )
+    squares = np.square(together / floor.rms[case.measured, None])
+    there = np.isfinite(squares)
+    count = there.sum(axis=0)  # none where an outlier was left out
+    return np.where(count > 0, np.where(there, squares, 0.0).sum(axis=0) / np.maximum(count, 1), 1.0) - 1.0
 
 
 def regimes(case: Case, of: Replayed, floor: Floor, records: PortRecords) -> list[dict[str, Any]]:

@@ -1,0 +1,28 @@
+"""Outliers are found in motion, alone and in pairs, and corners of a motion are none."""
+
+import numpy as np
+
+from tendonlab.checking.spikes import outliers
+
+TIME = np.arange(0.0, 10.0, 0.01)
+CHIRP = 0.5 * np.sin(2 * np.pi * (0.1 * TIME + 0.1 * TIME**2))  # up to 2.1 Hz: 0.07 rad from sample to sample
+NOISE = 1e-4 * np.random.default_rng(3).standard_normal(len(TIME))
+
+
+def test_outliers_are_found_in_fast_motion() -> None:
+    at = [120, 431, 780, 905, 906, 950, 981, 982]  # two pairs
+    wrong = CHIRP + NOISE
+    wrong[at] += [0.1, -0.3, 0.12, 0.4, -0.5, 0.2, 0.3, 0.25]
+    assert np.flatnonzero(outliers(wrong)).tolist() == at
+
+
+def test_smooth_motion_has_none() -> None:
+    assert not outliers(CHIRP + NOISE).any()
+
+
+def test_a_corner_is_none() -> None:
+    """A joint that hits a stop turns at once."""
+    stopped = np.minimum(2.0 * TIME, 7.0) + NOISE
+    bounced = 7.0 - 2.0 * np.abs(TIME - 3.5) + NOISE
+    assert not outliers(stopped).any()
+    assert not outliers(bounced).any()
