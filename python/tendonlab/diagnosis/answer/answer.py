@@ -30,7 +30,8 @@ def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], 
     judged = case.test or case.train
     steps = [heldout.replay(case, heldout.models(case, model, judged), judged) for model in search.path]
     untouched = heldout.replay(case, [case.system] * len(judged), judged)
-    floor = floor.reached_by(heldout.rms(steps[-1]))
+    if search.selected:  # an effect that was established stands out of the floor
+        floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     levels = Levels(
         nominal=nominal.mean_square if floor.repeated else _plain_level(stages["nominal"], floor),

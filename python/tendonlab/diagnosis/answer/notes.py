@@ -29,8 +29,8 @@ def _on_the_floor(floor: Floor) -> list[str]:
     if not floor.repeated:
         return [
             "No repeated runs, so the noise floor is assumed (sensor noise plus "
-            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % friction scatter). The effects named stand out of that floor; others "
-            "may hide below. Repeat one run to measure the floor."
+            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % friction scatter; at most what the simulator with the effects named "
+            "leaves). Weaker effects may hide below. Repeat one run to measure the floor."
         ]
     if floor.tau > UNSTEADY:
         return [f"Friction differs by {100 * floor.tau:.1f} % from run to run, which limits what can be said."]
