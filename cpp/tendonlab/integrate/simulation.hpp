@@ -45,11 +45,15 @@ class Simulation {
       double length = std::min(h, drive.longest_step());
       const bool lands = length > (retakes ? reach : 0.95 * reach);
       if (lands) length = reach;
-      const auto step = advance<Tableau>(system, y, frame, drive, length);
+      const bool explicitly = length < h && length <= explicit_reach;  // h reaches beyond what the inputs allow
+      const auto step = explicitly ? advance_explicitly<Kutta>(system, y, frame, drive, length)
+                                   : advance<Tableau>(system, y, frame, drive, length);
       const double wish = growth(step);
+      if (!explicitly) explicit_reach *= RETRY;
       if (!(wish > 0)) {  // rejected
         ++trajectory.rejected;
-        shrink(length * std::max(0.15, -wish));
+        const double shorter = length * std::max(0.15, -wish);
+        explicitly ? void(explicit_reach = shorter) : shrink(shorter);
         continue;
       }
       const Crossing first = earliest_crossing(values(step));
@@ -74,7 +78,7 @@ class Simulation {
       y = first.mode >= 0 ? step.at(first.share) : step.to;
       t = first.mode < 0 && lands ? std::min(kink, end) : t + taken;
       y.at.time = T(t);
-      h = lands ? std::max(h, length * wish) : length * wish;
+      h = lands || explicitly ? std::max(h, length * wish) : length * wish;
       if (first.mode >= 0) {
         ++trajectory.events;
         pass_event(first);
@@ -94,6 +98,7 @@ class Simulation {
     bool stale = false;  ///< the step began on its guard, in a mode that does not hold
   };
   static constexpr double on_guard = 1e-13;
+  static constexpr double RETRY = 1.1;  ///< growth of the reach of explicit steps while none is taken
 
   void start() {
     y.at.time = T(t);
@@ -302,6 +307,7 @@ class Simulation {
   Frame<System, T> frame;
   Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
+  double explicit_reach = Signal::inf_time;  ///< longest step that an explicit method takes as exactly
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?
   double memory_level[slots<System>] = {};

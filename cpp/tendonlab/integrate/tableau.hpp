@@ -23,4 +23,13 @@ struct Rodas4 {
       {10.12623508344586, -7.487995877610167, -34.80091861555747, -7.992771707568823, 1.025137723295662, 0},
       {-0.6762803392801253, 6.087714651680015, 16.43084320892478, 24.76722511418386, -6.594389125716872, 0}};
 };
+
+/// Kutta's 3/8 rule: explicit, order 4; its error of order 3 from the rate at the end of the step (Hairer, Norsett and
+/// Wanner, section II.4).
+struct Kutta {
+  static constexpr int stages = 5;
+  static constexpr double A[5][4] = {{0}, {1.0 / 3}, {-1.0 / 3, 1}, {1, -1, 1}, {1.0 / 8, 3.0 / 8, 3.0 / 8, 1.0 / 8}};
+  static constexpr double c[5] = {0, 1.0 / 3, 2.0 / 3, 1, 1},
+                          error[5] = {1.0 / 24, -1.0 / 8, 1.0 / 8, 1.0 / 8, -1.0 / 6};
+};
 }  // namespace tendonlab::integrate
