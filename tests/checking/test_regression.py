@@ -1,9 +1,11 @@
-"""The step of the regression: the minimum of a parabola where some unknowns cannot be negative."""
+"""The regression of the equation of motion: the minimum of its own posterior, found by an independent minimiser, and
+its step where some unknowns cannot be negative."""
 
 import numpy as np
 import pytest
+from scipy import optimize, stats
 
-from tendonlab.checking.regression import _solve
+from tendonlab.checking.regression import FREEDOM, Unknown, _solve, fit, growth, scale_and_weight
 
 INFORMATION = np.array([[2.0, 1.0], [1.0, 2.0]])
 
@@ -15,3 +17,78 @@ def test_an_unknown_that_cannot_be_negative_ends_at_zero_and_the_other_one_allow
     reached = x + _solve(INFORMATION, gradient, x, np.array([positive, False]))
     along_zero = [0.0, 1.0 - 0.4 * INFORMATION[1, 0] / INFORMATION[1, 1]]
     assert reached == pytest.approx(along_zero if positive else lowest)
+
+
+RNG = np.random.default_rng(5)
+NUM = 400
+COLUMNS = RNG.standard_normal((2, 2, NUM)) + np.array([1.0, 0.5])[:, None, None]
+SIZE, SHARE = np.array([2.0, 30.0]), np.array([0.5, 0.25])
+NOISE = np.array([0.1, 3.0])[:, None] * RNG.standard_t(4.0, (2, NUM))
+
+
+def posterior(x: np.ndarray, level: np.ndarray, residual: np.ndarray, logarithm: bool) -> float:
+    """Negative log density of the noise, Student's t of `level` per equation, and of the belief, normal of sd 0.5."""
+    amount = np.array([np.exp(x[0]) - 1.0 if logarithm else x[0], x[1]])
+    noise = (residual + np.tensordot(amount, COLUMNS, axes=1)) / SIZE[:, None]
+    density = stats.t(FREEDOM).logpdf(noise / level[:, None]) - stats.t(FREEDOM).logpdf(0.0) - np.log(level)[:, None]
+    return float(-SHARE @ density.sum(axis=1) + 0.5 * np.sum(x**2) / 0.5**2)
+
+
+@pytest.mark.parametrize("logarithm", [False, True])
+def test_a_fit_is_the_most_probable_point(logarithm: bool) -> None:
+    true = np.array([0.3, -0.2])
+    amount = np.array([np.expm1(true[0]) if logarithm else true[0], true[1]])
+    residual = NOISE - np.tensordot(amount, COLUMNS, axes=1)
+    unknowns = (Unknown("a", sd=0.5, logarithm=logarithm), Unknown("b", sd=0.5))
+    found = fit(residual, COLUMNS, unknowns, SIZE, SHARE)
+
+    best = optimize.minimize(lambda x: posterior(x, found.level, residual, logarithm), np.zeros(2), tol=1e-10)
+    assert found.x == pytest.approx(best.x, abs=1e-4)  # where the steps of the regression end
+    assert found.x == pytest.approx(true, abs=0.05)
+    assert found.cost == pytest.approx(posterior(found.x, found.level, residual, logarithm), rel=1e-9)
+    assert found.strain == pytest.approx(np.max(np.abs(found.x)) / 0.5)
+    left = residual + np.tensordot([np.expm1(found.x[0]) if logarithm else found.x[0], found.x[1]], COLUMNS, axes=1)
+    np.testing.assert_allclose(found.residual, left, atol=1e-12)
+    # the scale of the noise of each equation is known to a few percent from 400 samples
+    assert found.level == pytest.approx([0.1 / 2.0, 3.0 / 30.0], rel=0.1)
+
+
+def test_the_sd_of_a_fit_is_that_of_weighted_least_squares() -> None:
+    """The mean weight of Student's t noise is 1, so that n samples of scale s and a column of rms 1 leave s/√n."""
+    noise = 0.1 * RNG.standard_t(FREEDOM, (1, 4000))
+    column = RNG.standard_normal((1, 1, 4000))
+    found = fit(noise, column, (Unknown("a", sd=10.0),), np.ones(1), np.ones(1))
+    assert found.sd[0] == pytest.approx(0.1 / np.sqrt(4000), rel=0.05)
+    quarter = fit(noise, column, (Unknown("a", sd=10.0),), np.ones(1), np.full(1, 0.25))
+    assert quarter.sd[0] == pytest.approx(2.0 * found.sd[0], rel=0.01)
+    alone = fit(noise, 0.0 * column, (Unknown("a", sd=10.0),), np.ones(1), np.ones(1))
+    assert (alone.x[0], alone.sd[0]) == (0.0, pytest.approx(10.0, rel=1e-6))
+
+
+def test_outliers_lose_their_say() -> None:
+    column = np.ones((1, 1, 1000))
+    values = 0.01 * RNG.standard_normal((1, 1000))
+    values[0, ::50] = 100.0
+    assert abs(fit(values, column, (Unknown("a", sd=100.0),), np.ones(1), np.ones(1)).x[0]) < 0.01
+
+
+def test_what_has_no_value_costs_infinitely_much() -> None:
+    residual, column = np.ones((1, 10)), np.full((1, 1, 10), 1e300)
+    found = fit(residual, column, (Unknown("a", sd=1.0),), np.ones(1), np.ones(1))
+    assert found.cost == np.inf
+    assert np.isinf(found.level).all()
+
+
+def test_scale_and_weight_agree_with_each_other() -> None:
+    """At the scale of Student's t the weighted mean square is its square; a sample at the scale weighs 1."""
+    r = 0.3 * np.random.default_rng(1).standard_t(4.0, (1, 5000))
+    level, weight = scale_and_weight(r, np.array([0.25]))
+    assert level == pytest.approx([0.3], rel=0.06)  # 5000 samples
+    level, weight = scale_and_weight(r, level)
+    assert np.mean(weight * r**2) == pytest.approx(level[0] ** 2, rel=1e-2)
+    assert weight == pytest.approx(5.0 / (4.0 + (r / level[:, None]) ** 2), rel=1e-2)
+
+
+def test_a_column_grows_with_the_exponential_of_its_unknown() -> None:
+    unknowns = (Unknown("a", sd=1.0, logarithm=True), Unknown("b", sd=1.0))
+    assert growth(np.array([0.7, 0.7]), unknowns) == pytest.approx([np.exp(0.7), 1.0])

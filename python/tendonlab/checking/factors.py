@@ -68,10 +68,8 @@ def _scale_words(name: str, value: float, alternatives: Sequence[str], dataset: 
 
 
 def _hint(value: float) -> str:
-    """The confusion that a factor suggests."""
-    for ratio, label, inverse, words in KNOWN:
-        if abs(math.log(value / ratio)) < NEAR:
-            return f" (near {label}: {words}?)"
-        if abs(math.log(value * ratio)) < NEAR:
-            return f" (near {inverse}: {words}?)"
-    return ""
+    """The confusion that a factor suggests: the nearest of those that are known."""
+    labels = [(ratio, label, words) for ratio, label, _, words in KNOWN]
+    labels += [(1.0 / ratio, inverse, words) for ratio, _, inverse, words in KNOWN]
+    ratio, label, words = min(labels, key=lambda known: abs(math.log(value / known[0])))
+    return f" (near {label}: {words}?)" if abs(math.log(value / ratio)) < NEAR else ""

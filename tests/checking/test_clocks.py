@@ -1,0 +1,111 @@
+"""From lags to findings: what is a lag of one experiment, of all of them, of one channel, or nothing."""
+
+import numpy as np
+import pytest
+
+from tendonlab.checking.clocks import _common, clock_findings
+from tendonlab.checking.finding import Finding
+from tendonlab.checking.lags import Lags
+
+NAMES = ["a", "b", "c", "d", "e"]
+STEP = 0.01
+
+
+def findings(seconds: list[list[float]], *, sd: float = 1e-4, weight: float = 1e3) -> list[Finding]:
+    late = np.array(seconds)
+    channels = tuple(f"angle_{k + 1}" for k in range(len(late)))
+    lags = Lags(channels, late, np.full(late.shape, sd), np.full(late.shape, weight), 0.1)
+    return clock_findings(lags, NAMES[: late.shape[1]], ["motor_torque"], STEP)
+
+
+def test_no_lag_is_no_finding() -> None:
+    assert findings([[0.0, 1e-4, -1e-4, 0.0, 5e-5]]) == []
+
+
+@pytest.mark.parametrize(("seconds", "verb"), [(0.05, "lags"), (-0.05, "leads")])
+def test_one_experiment_that_lags_blocks(seconds: float, verb: str) -> None:
+    (found,) = findings([[0.0, 0.0, seconds, 0.0, 0.0]])
+    assert (found.problem, found.experiment, found.signal, found.blocks) == ("clock", "c", None, True)
+    assert found.seconds == pytest.approx(seconds)
+    assert found.alternatives == ("motor_torque", "angle_1")
+    assert f"angle_1 {verb} the inputs by 50 ms more" in found.detail
+
+
+def test_the_lag_of_one_experiment_is_counted_from_what_all_share() -> None:
+    found = findings([[0.02, 0.02, 0.09, 0.02, 0.02]])
+    assert [(f.experiment, f.blocks) for f in found] == [("c", True), (None, False)]
+    assert found[0].seconds == pytest.approx(0.07)
+    assert found[1].seconds == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "sd", "weight"),
+    [
+        (1.4 * STEP, 1e-4, 1e3),  # less than a step and a half
+        (4.9 * 0.01, 0.01, 1e3),  # less than five sd
+        (0.05, 1e-4, 2.9 / 0.05),  # worth less than three times what the equations leave
+    ],
+)
+def test_what_may_be_chance_does_not_block(seconds: float, sd: float, weight: float) -> None:
+    assert not any(f.blocks for f in findings([[0.0, 0.0, seconds, 0.0, 0.0]], sd=sd, weight=weight))
+    assert any(f.blocks for f in findings([[0.0, 0.0, 1.2 * seconds, 0.0, 0.0]], sd=sd, weight=weight))
+
+
+def test_of_two_channels_the_one_that_differs_is_guilty() -> None:
+    (found,) = findings([[0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.05, 0.0, 0.0, 0.0]])
+    assert (found.signal, found.experiment, found.alternatives) == ("angle_2", "b", ())
+    assert found.seconds == pytest.approx(0.05)
+
+
+def test_channels_that_are_late_together_share_the_blame_with_the_inputs() -> None:
+    (found,) = findings([[0.0, -0.04, 0.0, 0.0, 0.0], [0.0, -0.05, 0.0, 0.0, 0.0]])
+    assert (found.signal, found.experiment) == (None, "b")
+    assert found.alternatives == ("motor_torque", "angle_1", "angle_2")
+    assert found.seconds == pytest.approx(-0.05)  # the larger one
+    assert "angle_1 and angle_2" in found.detail
+
+
+@pytest.mark.parametrize(("seconds", "verb"), [(0.02, "lags"), (-0.02, "leads")])
+def test_a_lag_of_all_experiments_is_a_note(seconds: float, verb: str) -> None:
+    (found,) = findings([[seconds] * 5])
+    assert (found.experiment, found.signal, found.blocks) == (None, None, False)
+    assert found.seconds == pytest.approx(seconds)
+    assert f"angle_1 {verb} the inputs by 20 ms in all experiments" in found.detail
+    assert findings([[0.9 * 0.25 * STEP * np.sign(seconds)] * 5]) == []  # less than a quarter of a step
+
+
+def test_channels_that_lag_alike_are_one_note_and_others_one_each() -> None:
+    (together,) = findings([[0.020] * 5, [0.021] * 5])
+    assert (together.signal, together.alternatives) == (None, ("motor_torque", "angle_1", "angle_2"))
+    assert "angle_1 and angle_2 lag the inputs" in together.detail
+    apart = findings([[0.02] * 5, [0.06] * 5])
+    assert [(f.signal, f.alternatives, round(f.seconds or 0.0, 6)) for f in apart] == [
+        ("angle_1", (), 0.02),
+        ("angle_2", (), 0.06),
+    ]
+    (one,) = findings([[0.02] * 5, [0.0] * 5])
+    assert (one.signal, one.seconds) == ("angle_1", pytest.approx(0.02))
+
+
+def test_a_long_lag_is_said_in_seconds() -> None:
+    (found,) = findings([[0.0, 0.0, 1.5, 0.0, 0.0]])
+    assert "by 1.5 s more" in found.detail
+
+
+def test_the_common_lag_is_the_weighted_median() -> None:
+    """Two exact experiments outweigh three vague ones."""
+    seconds = np.array([0.0, 0.001, 0.5, 0.6, 0.7])
+    common, total = _common(seconds, np.array([1e-3, 1e-3, 1.0, 1.0, 1.0]), np.zeros(5))
+    assert common == pytest.approx(0.0005, abs=0.0006)
+    np.testing.assert_allclose(total, [1e-3, 1e-3, 1.0, 1.0, 1.0])
+
+
+def test_the_scatter_of_the_middle_experiment_is_what_half_of_normal_errors_exceed() -> None:
+    """Lags that scatter by s, where sd is smaller: the total sd becomes s, in proportion to the levels."""
+    seconds = 0.05 * np.random.default_rng(0).standard_normal(4001)
+    level = np.full(4001, 0.3)
+    common, total = _common(seconds, np.full(4001, 1e-3), level)
+    assert abs(common) < 0.005
+    assert 0.97 * 0.05 < total[0] < 1.2 * 0.05  # the shares that are tried lie 1.17 apart
+    _, known = _common(seconds, np.full(4001, 0.05), level)
+    np.testing.assert_allclose(known, 0.05, rtol=0.05)

@@ -1,0 +1,69 @@
+"""Lags of the outputs: the step of all unknowns together against one dense least-squares problem, and the weight."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from checking.pendulum import late_run, record
+from tendonlab.checking.equation import Equation
+from tendonlab.checking.lags import _regular, _steps, _weights, lags
+from tendonlab.checking.logs import read_logs
+from tendonlab.checking.regression import FREEDOM, Fit, Unknown
+from tendonlab.checking.terms import Terms
+
+
+def test_the_step_is_that_of_all_unknowns_at_once() -> None:
+    """Two shared unknowns, two of each of three experiments: eliminated one by one, and solved as one matrix."""
+    rng = np.random.default_rng(0)
+    run = np.repeat([0, 1, 2], [40, 50, 60])
+    residual, columns = rng.standard_normal((2, 150)), rng.standard_normal((2, 2, 150))
+    own, own_belief = rng.standard_normal((2, 2, 150)), np.array([4.0, 9.0])
+    unknowns = (Unknown("a", sd=0.5), Unknown("b", sd=0.2, logarithm=True))
+    at, x = Terms(residual, columns, unknowns, np.array([2.0, 3.0])), np.array([0.1, -0.3])
+    level, share = np.sqrt(np.mean(np.square(residual / at.size[:, None]), axis=1)), np.array([0.5, 0.2])
+    fit = Fit(0.0, x, np.ones(2), level, residual, 0.0)
+    step, sd = _steps(at, fit, own, own_belief, run, share)
+
+    scale = level.copy()
+    for _ in range(3):  # the scale of Student's t, as of the fit
+        weight = (FREEDOM + 1) / (FREEDOM + (residual / at.size[:, None] / scale[:, None]) ** 2)
+        scale = np.sqrt(np.mean(weight * (residual / at.size[:, None]) ** 2, axis=1))
+    root = np.sqrt(weight * share[:, None]) / scale[:, None] / at.size[:, None]
+    rows = [(columns[0] * root).ravel(), (columns[1] * np.exp(x[1]) * root).ravel()]
+    rows += [(own[k] * root * (run == i)).ravel() for i in range(3) for k in range(2)]
+    matrix = np.array(rows).T
+    belief = np.array([1 / 0.5**2, 1 / 0.2**2, *([4.0, 9.0] * 3)])
+    start = np.array([*x, *[0.0] * 6])
+    information = matrix.T @ matrix + np.diag(belief)
+    best = -np.linalg.solve(information, matrix.T @ (residual * root).ravel() + belief * start)
+    np.testing.assert_allclose(step, best[2:].reshape(3, 2).T, rtol=1e-8)
+    variance = np.diag(np.linalg.inv(information))[2:]
+    np.testing.assert_allclose(sd, np.sqrt(variance).reshape(3, 2).T, rtol=1e-8)
+
+
+def test_the_weight_of_a_lag_is_the_rms_of_the_equation_that_it_changes_most() -> None:
+    slopes = np.zeros((2, 2, 6))
+    slopes[0, 1] = [3.0, -3.0, 3.0, 0.0, 0.0, 0.0]
+    slopes[0, 0] = [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
+    slopes[1, 0] = [0.0, 0.0, 0.0, 4.0, 0.0, 0.0]
+    weight = _weights(slopes, np.array([0, 0, 0, 1, 1, 1]), 2)
+    np.testing.assert_allclose(weight, [[3.0, 2.0], [0.0, np.sqrt(16.0 / 3.0)]])
+
+
+@pytest.mark.parametrize("late", [0.012, 0.06])
+def test_lags_come_out_with_their_sd_and_in_their_experiment(late: float, tmp_path: Path) -> None:
+    """Friction that the equation lacks shifts a lag by a few milliseconds, more than the sd of the noise alone."""
+    rig = late_run(record(), "sweep", late).write(tmp_path)
+    logs = read_logs(rig, rig.system().info)
+    assert logs is not None
+    found = lags(Equation(rig, rig.system()), logs)
+    assert found.channels == ("joint_angle",)
+    by_name = dict(zip([e.name for e in rig.experiments], found.seconds[0], strict=True))
+    assert by_name.pop("sweep") == pytest.approx(late, abs=0.003)
+    assert list(by_name.values()) == pytest.approx([0.0] * 3, abs=0.003)
+    assert np.all((found.sd > 1e-6) & (found.sd < 0.005))
+    assert 0.0 < found.level < 0.1
+    kept = _regular(logs, 100)
+    assert 50 < len(kept) <= 100
+    assert logs.clear[kept].all()
