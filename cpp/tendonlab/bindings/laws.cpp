@@ -2,8 +2,8 @@
 #include <functional>
 
 #include "tendonlab/bindings/columns.hpp"
-#include "tendonlab/bindings/law_box.hpp"
 #include "tendonlab/bindings/words.hpp"
+#include "tendonlab/models/laws.hpp"
 
 namespace tendonlab::bindings {
 namespace {
@@ -302,14 +302,13 @@ void bind_laws(py::module_& module) {
   options.disable_function_signatures();  // those of pybind11 say nothing about keywords
   const py::object base = bind_base(module);
   py::list registered;
-  for_each_group([&](const char* group, const char* doc, auto list) {
-    py::module_ inside = module.def_submodule(group, doc);
-    for (const auto make_facts : facts_of_all<decltype(list)>()) {
-      const auto& law = *new LawFacts(make_facts());
-      registered.append(py::make_tuple(group, law.name));
+  for (const LawGroup& group : law_groups()) {
+    py::module_ inside = module.def_submodule(group.name, group.doc);
+    for (const LawFacts& law : group.laws) {
+      registered.append(py::make_tuple(group.name, law.name));
       inside.attr(pascal_case(law.name).c_str()) = class_of(law, base, inside);
     }
-  });
+  }
   options.enable_function_signatures();
   module.def(
       "laws", [all = py::tuple(registered)] { return all; }, "All laws as (group, name), in the order of reports.");

@@ -1,9 +1,6 @@
 #pragma once
 // One order for everything that a system consists of: its own parameters, its slots, its load, its actuation, its
 // sensors. To describe, fill or seed a system is to walk through it here.
-#include <string>
-#include <vector>
-
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::systems {
@@ -32,21 +29,6 @@ void share_slots(System& system, std::index_sequence<i...>) {
   (place(std::get<i>(system.slot).laws, System::ports[i]), ...);
 }
 
-/// Names of the places where laws sit, in the order of the walk.
-template <class System>
-std::vector<std::string> place_names() {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < System::ports.size(); ++i)
-    if (first_port<System>(i) == i) {
-      names.emplace_back(System::ports[i].element);
-      if (System::ports[i].element == System::passing) names.emplace_back(System::passing);
-    }
-  if constexpr (decltype(System::load)::size > 0) names.emplace_back("load");
-  if constexpr (decltype(System::actuation)::size > 0) names.emplace_back("actuation");
-  if constexpr (decltype(System::sensor)::value_type::size > 0)
-    for (const auto& output : System::outputs) names.push_back("sensor." + std::string(output.name));
-  return names;
-}
 /// Calls f(laws, active) for each place where laws sit.
 template <class System, class F>
 void for_each_place(System& system, F&& f) {

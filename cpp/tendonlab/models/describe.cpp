@@ -1,5 +1,7 @@
 #include "tendonlab/models/describe.hpp"
 
+#include <algorithm>
+
 namespace tendonlab::systems {
 namespace {
 /// "bushing_1" as "bushing 1".
@@ -10,34 +12,54 @@ std::string spaced(std::string name) {
 }
 }  // namespace
 
-ParameterInfo parameter_info(const Row& p, const std::string& name, const std::string& element,
-                             const std::string& law) {
-  return {name,      element, law,     std::string(p.name),   p.dimension, p.purpose, p.role,
-          p.typical, p.lower, p.upper, std::string(p.meaning)};
+unsigned active_bits(const Configuration& of, std::size_t first, std::size_t count) {
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (of.active[first + i]) bits |= 1u << i;
+  return bits;
 }
 
 Describe::Describe(SystemFacts of) : system(std::move(of)) {
-  SystemInfo& info = made.info;
+  SystemInfo& info = description.info;
   info.kind = system.name, info.equation = system.equation, info.dof = system.stated;
   info.commanded = system.commanded, info.sampled = system.sampled, info.steady = system.steady;
-  info.inputs = system.inputs;
-  info.outputs = system.outputs;
+  info.inputs.assign(system.inputs.begin(), system.inputs.end());
+  info.outputs.assign(system.outputs.begin(), system.outputs.end());
   for (const auto& port : system.ports)
     info.ports.push_back({std::string(port.name), std::string(port.element), port.load});
   for (const auto& name : system.nominal) info.nominal.emplace_back(name);
 }
 
-void Describe::add_own(const std::vector<Row>& parameters) {
-  for (const Row& p : parameters) made.parameter_of_field.push_back(add({}, {}, p));
+void Describe::add_own(const std::vector<ParameterInfo>& parameters) {
+  for (const ParameterInfo& p : parameters) description.parameter_of_field.push_back(add({}, p));
 }
 
-void Describe::add_place(const std::string& name) {
-  if (element == name) return;  // the laws of the effort that an element passes on follow those of its slot
-  element = name;
-  made.info.elements.push_back({element, axis(), place_words(), acts_on()});
+/// In the order of the walk (assemble.hpp): each element with ports once, and again for the effort that it passes on.
+std::vector<std::string> Describe::place_names() const {
+  std::vector<std::string> all;
+  for (const Port* port = system.ports.begin(); port != system.ports.end(); ++port) {
+    const auto shares = [port](const Port& other) { return other.element == port->element; };
+    if (std::any_of(system.ports.begin(), port, shares)) continue;
+    all.emplace_back(port->element);
+    if (port->element == system.passing) all.emplace_back(system.passing);
+  }
+  if (system.load) all.emplace_back("load");
+  if (system.actuation) all.emplace_back("actuation");
+  if (system.sensors)
+    for (const Output& output : system.outputs) all.push_back("sensor." + std::string(output.name));
+  return all;
 }
 
-void Describe::add_law(const LawFacts& law, const std::vector<Row>& parameters) {
+void Describe::add_place(const std::vector<const std::type_info*>& laws) {
+  const std::string& name = *next_place++;
+  if (element != name) {  // the laws of the effort that an element passes on follow those of its slot
+    element = name;
+    description.info.elements.push_back({element, axis(), place_words(), acts_on()});
+  }
+  for (const std::type_info* law : laws) add_law(law_facts(*law));
+}
+
+void Describe::add_law(const LawFacts& law) {
   const std::string name = effect_name(law.name);
   EffectInfo effect{name,
                     element,
@@ -52,24 +74,25 @@ void Describe::add_law(const LawFacts& law, const std::vector<Row>& parameters) 
                     {},
                     law.roles,
                     is_structural(name)};
-  for (const Row& p : parameters) {
-    made.parameter_of_field.push_back(add(law.name, law.partner, p));
-    const auto& owner = made.info.parameters[made.parameter_of_field.back()];
+  for (const ParameterInfo& p : law.parameters) {
+    description.parameter_of_field.push_back(add(law.partner, p));
+    const auto& owner = description.info.parameters[description.parameter_of_field.back()];
     const std::string holding = owner.element + ":" + owner.effect;
     if (owner.effect == law.name)
       effect.parameters.push_back(owner.name);
     else if (!is_structural(holding))  // structural effects are always there
       effect.needs.push_back(holding);
   }
-  made.info.effects.push_back(std::move(effect));
+  description.info.effects.push_back(std::move(effect));
 }
 
-std::size_t Describe::add(std::string_view law, std::string_view partner, const Row& p) {
-  auto& all = made.info.parameters;
+std::size_t Describe::add(std::string_view partner, ParameterInfo own) {
+  auto& all = description.info.parameters;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].own == p.name && all[i].element == element && (all[i].effect == law || all[i].effect == partner))
+    if (all[i].own == own.own && all[i].element == element && (all[i].effect == own.effect || all[i].effect == partner))
       return i;
-  all.push_back(under_load(parameter_info(p, parameter_name(law, p.name), element, std::string(law))));
+  own.name = parameter_name(own.effect, own.own), own.element = element;
+  all.push_back(under_load(std::move(own)));
   return all.size() - 1;
 }
 
@@ -93,7 +116,7 @@ std::string Describe::acts_on() const {
   for (const auto& port : system.ports)
     if (port.element == element || (place != nullptr && port.element == place->acts_on))
       return std::string(port.element);
-  return std::string(system.ports[0].element);
+  return std::string(system.ports.begin()->element);
 }
 std::string Describe::axis() const {
   for (const auto& port : system.ports)

@@ -19,17 +19,4 @@ constexpr void for_each_group(F&& f) {
   f("actuation", "Laws of actuators.", actuation::Every{});
   f("sensing", "Laws of sensors.", sensing::All{});
 }
-template <class Law, template <class> class... Of>
-constexpr bool contains(Laws<Of...>) {
-  return (std::is_same_v<Of<double>, Law> || ...);
-}
-/// The group of a law.
-template <class Law>
-constexpr std::string_view group_of() {
-  std::string_view group;
-  for_each_group([&](const char* name, const char*, auto list) {
-    if (contains<Law>(list)) group = name;
-  });
-  return group;
-}
 }  // namespace tendonlab

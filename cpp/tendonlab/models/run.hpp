@@ -36,17 +36,34 @@ struct Job : Assembly {
   bool shows_ports() const { return settings.ports && first == 0; }
 };
 
+/// Hands out the numbers of a system, field by field. A call for each, rather than a copy of this code for each.
+template <class T>
+class FieldValues {
+ public:
+  FieldValues(const Assembly& of)
+      : values(of.seeded<T>(of.with.values, integrate::Seed::Of::parameter)),
+        next(of.described.parameter_of_field.begin()) {}
+  template <class Field>
+  [[gnu::noinline]] void read(Field& field) {
+    field = values[*next++];
+  }
+
+ private:
+  const std::vector<T> values;
+  std::vector<std::size_t>::const_iterator next;
+};
+
 /// The system with these numbers in it.
 template <class System, class T>
 System assemble(const Assembly& of) {
   System system{};
-  const auto values = of.seeded<T>(of.with.values, integrate::Seed::Of::parameter);
-  auto next = of.described.parameter_of_field.begin();
-  for_each_field(system, [&](auto& field) { field = values[*next++]; });
+  FieldValues<T> values(of);
+  for_each_field(system, [&](auto& field) { values.read(field); });
   std::size_t effect = 0;
   for_each_place(system, [&](auto& laws, unsigned& active) {
-    for (unsigned law = 0; law < std::tuple_size_v<std::decay_t<decltype(laws)>>; ++law)
-      if (of.with.active[effect++]) active |= 1u << law;
+    constexpr std::size_t count = std::tuple_size_v<std::decay_t<decltype(laws)>>;
+    active = active_bits(of.with, effect, count);
+    effect += count;
   });
   share_slots(system, std::make_index_sequence<System::ports.size()>{});
   system.prepare();

@@ -1,42 +1,28 @@
-#pragma once
-// Laws behind one interface of plain numbers: the templates end here, and all that Python sees is made once for all.
-#include <memory>
-#include <vector>
+// Laws behind one interface of plain numbers: the templates end here.
+#include "tendonlab/models/laws.hpp"
+
+#include <map>
+#include <typeindex>
 
 #include "tendonlab/core/chain.hpp"
-#include "tendonlab/models/describe.hpp"
+#include "tendonlab/models/groups.hpp"
 
-namespace tendonlab::bindings {
-using Numbers = std::vector<double>;
+namespace tendonlab {
+ParameterInfo own_parameter(const Row& p) {
+  const std::string name(p.name);
+  return {name, {}, {}, name, p.dimension, p.purpose, p.role, p.typical, p.lower, p.upper, std::string(p.meaning)};
+}
 
-/// A law with its numbers. It answers in its own roles, and 0 in others. `port`: one number per `LawFacts::fields`;
-/// `moving`: velocity, deflection, dry friction level, load; `samples`: the fields of each sample of a signal.
-class LawBox {
- public:
-  virtual ~LawBox() = default;
-  virtual double level(const Numbers& port) const = 0;
-  virtual double factor(const Numbers& port) const = 0;
-  virtual double gain(const Numbers& port) const = 0;
-  virtual double force(const Numbers& port) const = 0;
-  virtual Numbers motion(const Numbers& port) const = 0;
-  virtual double state_rate(const Numbers& moving) const = 0;
-  virtual double state_force(const Numbers& moving) const = 0;
-  /// The signal behind the law; `dt`: time since the sample before, which only a law that keeps a state sees.
-  virtual Numbers pass(const std::vector<Numbers>& samples, const Numbers& dt) const = 0;
-  virtual double lateness() const = 0;
+namespace {
+template <class Law, class = void>
+struct PartnerOf {
+  static constexpr std::string_view name = Law::name;
 };
-
-/// What a law states about itself, and how it is made.
-struct LawFacts : systems::LawFacts {
-  bool delays, keeps_state;
-  std::vector<std::string> fields;  ///< of the port or signal that the law sees
-  std::vector<ParameterInfo> parameters;
-  std::unique_ptr<const LawBox> (*make)(const Numbers& values);
-
-  bool plays(unsigned wanted) const { return (roles & wanted) != 0; }
+template <class Law>
+struct PartnerOf<Law, std::void_t<typename Law::Partner>> {
+  static constexpr std::string_view name = Law::Partner::name;
 };
-
-inline double sign_between(double above, double below) {
+double sign_between(double above, double below) {
   return static_cast<double>((above > 0) - (below < 0));
 }
 /// What a law sees: Sliding or Passing, or a port or signal of its own with more fields.
@@ -152,19 +138,44 @@ std::unique_ptr<const LawBox> make_box(const Numbers& values) {
   return std::make_unique<BoxOf<L>>(values);
 }
 template <class L>
-LawFacts facts_of() {
-  LawFacts facts{systems::law_facts<L>(), delays_signal<L>, keeps_state<L>, {}, {}, &make_box<L>};
+LawFacts facts_of(std::string_view group) {
+  LawFacts facts{
+      group,    L::name,          L::noun,        L::equation, L::source,           L::summary,  PartnerOf<L>::name,
+      L::roles, delays_signal<L>, keeps_state<L>, {},          own_parameters<L>(), &make_box<L>};
   PortOf<L>::type::for_each_field([&](std::string_view name, unsigned, auto) { facts.fields.emplace_back(name); });
-  for (const systems::Row& row : systems::rows<L>())
-    facts.parameters.push_back(systems::parameter_info(row, std::string(row.name), {}, std::string(L::name)));
+  for (ParameterInfo& p : facts.parameters) p.effect = L::name;
   return facts;
 }
-/// What makes the facts of each law of a list, in its order. Pointers keep compilers from inlining them all in one
-/// place.
-template <class List>
-std::vector<LawFacts (*)()> facts_of_all() {
-  std::vector<LawFacts (*)()> all;
-  List::for_each([&](auto* law) { all.push_back(&facts_of<std::remove_pointer_t<decltype(law)>>); });
+
+using FactsByType = std::map<std::type_index, const LawFacts*>;
+FactsByType facts_by_type() {
+  FactsByType all;
+  auto group = law_groups().begin();
+  for_each_group([&](const char*, const char*, auto list) {
+    auto facts = (group++)->laws.begin();
+    list.for_each([&](auto* law) { all[typeid(*law)] = &*facts++; });
+  });
   return all;
 }
-}  // namespace tendonlab::bindings
+}  // namespace
+
+const std::vector<LawGroup>& law_groups() {
+  static const auto all = [] {
+    std::vector<LawGroup> groups;
+    for_each_group([&](const char* name, const char* doc, auto list) {
+      groups.push_back({name, doc, {}});
+      list.for_each(
+          [&](auto* law) { groups.back().laws.push_back(facts_of<std::remove_pointer_t<decltype(law)>>(name)); });
+    });
+    return groups;
+  }();
+  return all;
+}
+
+const LawFacts& law_facts(const std::type_info& law) {
+  static const FactsByType all = facts_by_type();
+  const auto found = all.find(law);
+  if (found == all.end()) throw std::logic_error("a law that is in no group (models/groups.hpp)");
+  return *found->second;
+}
+}  // namespace tendonlab
