@@ -1,12 +1,14 @@
 """The verdict from what tuning leaves: an assumed floor excuses some of it, and no more."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, decide
+from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
 
 
 def nothing_selected(*, refitted: float, repeated: bool = False, tuned: float = 1.0) -> Verdict:
@@ -37,3 +39,77 @@ def test_without_repeats_a_missing_effect_is_not_called_a_matter_of_parameters()
     alone = replace(rig, experiments=tuple(replace(e, repeat=None) for e in rig))
     found = tl.diagnose(alone, library=["sensor.joint_angle:bias"], progress=False)
     assert (found.selected, found.verdict) == ((), "unknown_effect")
+
+
+def contest(base: tuple[str, ...], accepted: str | None, **probability: float) -> Any:
+    """A round over named effects; `none`: that there is no further one."""
+    chances: dict[str | None, float] = {name: p for name, p in probability.items() if name != "none"}
+    trial = SimpleNamespace(effect=accepted) if accepted else None
+    return SimpleNamespace(base=base, accepted=trial, probability={**chances, None: probability["none"]})
+
+
+FIRST = contest(("b",), "a", a=0.8, c=0.15, none=0.05)
+SECOND = contest(("a",), "b", b=0.6, c=0.3, none=0.1)
+LAST = contest(("a", "b"), None, c=0.2, none=0.8)
+
+
+def test_probabilities_of_effects_are_given_the_other_selected_ones() -> None:
+    """Of the effects that were not selected only the last round counts in full proportion to the selected ones."""
+    effects, _ = marginals((FIRST, SECOND, LAST))
+    assert effects == pytest.approx({"a": 0.8, "b": 0.6, "c": 0.15 + 0.3 + 0.8 * 0.6 * 0.2})
+
+
+def test_sets_are_each_alternative_with_what_was_selected_besides() -> None:
+    _, sets = marginals((FIRST, SECOND, LAST))
+    found = {tuple(s["effects"]): s["probability"] for s in sets}
+    expected = {
+        ("b", "c"): 0.6 * 0.15, ("b",): 0.6 * 0.05, ("a", "c"): 0.8 * 0.3, ("a",): 0.8 * 0.1,
+        ("a", "b", "c"): 0.48 * 0.2, ("a", "b"): 0.48 * 0.8,
+    }  # fmt: skip
+    assert found == pytest.approx(expected)
+    assert [s["probability"] for s in sets] == sorted(found.values(), reverse=True)
+
+
+def test_effects_within_a_fifth_of_the_accepted_one_are_not_told_apart() -> None:
+    assert _group(contest((), "a", a=0.5, b=0.11, c=0.09, none=0.3)) == ["a", "b"]
+    assert _group(contest((), "a", a=0.9, b=0.05, none=0.05)) == []
+    assert _group(contest((), None, a=0.5, b=0.5, none=0.0)) == []
+
+
+def selected(
+    *, nominal: float = 50.0, tuned: float = 20.0, explained: float | None = 0.9, none: float = 0.01
+) -> Verdict:
+    """The verdict where one effect was selected."""
+    levels = Levels(nominal=nominal, tuned=tuned, refitted=tuned, explained=explained, repeated=True)
+    return decide((contest((), "a", a=1.0 - none, none=none),), ("a",), levels)
+
+
+@pytest.mark.parametrize(
+    ("explained", "verdict"), [(0.9, "effect"), (0.74, "unknown_effect"), (None, "unknown_effect")]
+)
+def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess(
+    explained: float | None, verdict: str
+) -> None:
+    found = selected(explained=explained)
+    assert found.verdict == verdict
+    assert max(found.probability, key=lambda name: found.probability[name]) == verdict
+    assert sum(found.probability.values()) == pytest.approx(1.0)
+
+
+def test_verdict_probabilities_follow_the_share_that_is_explained() -> None:
+    """Far above and far below three quarters nearly all of the probability is on one side."""
+    assert selected(explained=1.0).probability["effect"] > 0.95
+    assert selected(explained=0.2).probability["unknown_effect"] > 0.95
+    assert selected(explained=1.0, none=0.3).probability["parameters_only"] < 1e-3  # tuning does not reach the floor
+    assert selected(tuned=1.0, explained=1.0, none=0.3).probability["parameters_only"] > 0.2
+
+
+def test_a_simulator_at_the_floor_has_no_gap() -> None:
+    for nominal, tuned in ((1.1, 1.0), (1.2, 1.18)):  # below 1.15, or nothing to gain by tuning
+        levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, repeated=True)
+        found = decide((), (), levels)
+        assert found.verdict == "no_gap"
+        assert max(found.probability, key=lambda name: found.probability[name]) == "no_gap"
+    for nominal, tuned in ((1.2, 1.1), (1.4, 1.35)):
+        levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, repeated=True)
+        assert decide((), (), levels).verdict != "no_gap"

@@ -1,0 +1,218 @@
+"""What is established: bars, probabilities and the share of the error that an effect must remove, on stated numbers."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.search import contest
+from tendonlab.diagnosis.search.contest import Round, _explains_enough, _worth_adding, probabilities
+from tendonlab.diagnosis.search.refit import _goal, _may_be_trapped, strained
+from tendonlab.diagnosis.search.screen import _Score as Score
+from tendonlab.diagnosis.search.screen import _score, _starts, _unit
+from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
+from tendonlab.fitting.problem import Fitter
+
+
+def trial(effect: str, gain: float, *, left_out: float = 100.0, doubt: float = 0.0, **fitted: Any) -> Any:
+    return Trial(effect, SimpleNamespace(**fitted), gain, left_out, doubt)  # type: ignore[arg-type]
+
+
+def fitter_of(*, repeated: bool, **more: Any) -> Any:
+    return SimpleNamespace(floor=SimpleNamespace(repeated=repeated), **more)
+
+
+def test_probabilities_are_the_odds_of_evidence_over_temperature() -> None:
+    """Of two established effects 8 nats apart at temperature 4 the first is e² times as probable."""
+    found = probabilities([trial("a", 48.0), trial("b", 40.0)], {"a", "b"}, DETECT, 4.0)
+    assert sum(found.values()) == pytest.approx(1.0)
+    assert found["a"] / found["b"] == pytest.approx(np.exp(2.0))
+    assert found[None] / found["b"] == pytest.approx(np.exp((DETECT.evidence - 40.0) / 4.0))
+
+
+def test_an_effect_that_is_not_established_ranks_three_temperatures_behind_none() -> None:
+    found = probabilities([trial("a", 48.0), trial("weak", 1.0)], set(), DETECT, 4.0)
+    assert found["a"] / found[None] == pytest.approx(np.exp(-3.0))
+    few = (DETECT.evidence - 3.0 * 4.0) - 1.0
+    assert few < 0.0  # its own gain counts where it is less
+    assert probabilities([trial("weak", -9.0)], set(), DETECT, 4.0)["weak"] == pytest.approx(
+        1.0 / (1.0 + np.exp((DETECT.evidence + 9.0) / 4.0))
+    )
+
+
+@pytest.mark.parametrize(("square", "temperature"), [(0.5, 4.0), (6.0, 24.0)])
+def test_what_the_best_model_leaves_heats_the_odds(nominal: Fitted, square: float, temperature: float) -> None:
+    trials = [trial("a", 60.0, whitened_square=square), trial("b", 40.0, whitened_square=square + 5.0)]
+    found = Round.of(nominal, [], trials, established={"a", "b"}, bar=DETECT, accepted=trials[0]).probability
+    assert np.log(found["a"] / found["b"]) == pytest.approx(20.0 / temperature)
+
+
+@pytest.mark.parametrize(
+    ("bar", "evidence", "left_out", "doubt", "passed"),
+    [
+        (DETECT, 10.1, 3.1, 50.0, True),
+        (DETECT, 9.9, 3.1, 0.0, False),
+        (DETECT, 10.1, 2.9, 0.0, False),
+        (Bar(30.0, 9.0, doubted=True), 31.0, 9.5, 8.0, True),
+        (Bar(30.0, 9.0, doubted=True), 31.0, 9.5, 9.6, False),
+        (Bar(30.0, 9.0, doubted=True), 31.0, 8.5, 0.0, False),
+    ],
+)
+def test_a_bar_asks_for_evidence_and_for_left_out_experiments_beyond_doubt(
+    bar: Bar, evidence: float, left_out: float, doubt: float, passed: bool
+) -> None:
+    assert bar.passed(trial("a", evidence, left_out=left_out, doubt=doubt)) == passed
+
+
+def test_the_bar_of_a_further_effect_rises_with_what_the_first_gained_where_runs_repeat() -> None:
+    assert bar_for_further_effect(fitter_of(repeated=True), 1000.0) == Bar(30.0, 9.0, doubted=True)
+    assert bar_for_further_effect(fitter_of(repeated=True), 10_000.0) == Bar(100.0, 9.0, doubted=True)
+    assert bar_for_further_effect(fitter_of(repeated=False), 10_000.0) == Bar(10.0, 3.0, doubted=True)
+
+
+def test_a_trial_gains_what_its_model_has_over_the_one_it_extends() -> None:
+    """Rows of the base count as those of the extended model; doubt is that of the gains of the experiments."""
+    scores = np.array([5.0, 1.0, 2.0])
+    base = SimpleNamespace(evidence=-50.0, left_out=scores, counted=lambda shares: counted.append(shares) or base)
+    counted: list[Any] = []
+    fitted = SimpleNamespace(
+        evidence=-20.0,
+        left_out=scores + np.array([10.0, -1.0, 4.0]),
+        shares=(0.5,),
+        by_experiment=lambda gains: gains[:3],
+    )
+    made = Trial.of("a", fitted, base)  # type: ignore[arg-type]
+    assert (made.evidence_gain, made.left_out_gain, counted) == (30.0, 13.0, [(0.5,)])
+    assert made.doubt == 5.0  # five times the loss of one nat
+
+
+@pytest.mark.parametrize(
+    ("rivals", "left", "enough"),
+    [
+        ([], 6.8, True),  # alone: a third of 9.0 must go
+        ([], 6.9, False),
+        ([40.0], 6.8, True),
+        ([60.0], 6.0, False),  # a rival gains half as much: half must go
+        ([60.0], 5.4, True),
+        ([98.0], 6.8, True),  # says the same as the first
+    ],
+)
+def test_without_repeats_an_effect_must_remove_much_of_what_is_left(
+    rivals: list[float], left: float, enough: bool
+) -> None:
+    base: Any = SimpleNamespace(mean_square=10.0)
+    trials = [trial("a", 100.0, mean_square=left), *(trial("b", gain, mean_square=9.0) for gain in rivals)]
+    assert _explains_enough(base, trials) == enough
+
+
+@pytest.mark.parametrize(
+    ("base", "first", "further", "better", "worth"),
+    [
+        (1.2, 1.16, False, True, False),  # near the floor it must matter
+        (1.2, 1.10, False, True, True),
+        (1.2, 1.10, False, False, False),
+        (5.0, 4.9, False, False, True),  # far from the floor the first effect needs no halves
+        (5.0, 4.9, True, False, False),
+        (5.0, 4.9, True, True, True),
+    ],
+)
+def test_near_the_floor_and_beyond_the_first_effect_halves_decide(
+    base: float, first: float, further: bool, better: bool, worth: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
+    of: Any = SimpleNamespace(mean_square=base)
+    assert _worth_adding(fitter_of(repeated=True), of, [trial("a", 50.0, mean_square=first)], further=further) == worth
+
+
+def test_halves_are_predicted_better_only_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tendonlab.diagnosis.search import halves
+
+    scores = {"base": np.array([1.0, 2.0]), "better": np.array([9.0, 9.0]), "mixed": np.array([9.0, -7.0])}
+    monkeypatch.setattr(halves, "_scores", lambda fitter, model, odd: scores[model.name])
+    base, better, mixed = (SimpleNamespace(name=n, shares=None, counted=lambda s: base) for n in scores)
+    assert halves.predicts_better(fitter_of(repeated=True), base, better)  # type: ignore[arg-type]
+    assert not halves.predicts_better(fitter_of(repeated=True), base, mixed)  # type: ignore[arg-type]
+    assert not halves.predicts_better(fitter_of(repeated=True), better, base)  # type: ignore[arg-type]
+
+
+def evident(evidence: float, **more: Any) -> Any:
+    model = SimpleNamespace(evidence=evidence, **more)
+    model.counted = lambda: model
+    return model
+
+
+def test_a_sketch_is_finished_where_it_can_reach_half_of_the_rivals_gain() -> None:
+    base = evident(-100.0, cost=90.0, runs=[SimpleNamespace(residual=np.zeros(50))] * 2)
+    repeated, alone = fitter_of(repeated=True), fitter_of(repeated=False)
+    assert _goal(repeated, base, None, -60.0) == pytest.approx(90.0 - 0.5 * 40.0)
+    assert _goal(repeated, base, None, None) == np.inf
+    assert _goal(repeated, base, evident(-30.0), -60.0) == pytest.approx(90.0 - 20.0)  # 50 nats behind the best
+    assert _goal(repeated, base, evident(20.0), -60.0) == pytest.approx(90.0 - 70.0)
+    assert _goal(alone, base, None, -60.0) == pytest.approx(90.0 * np.exp(-2.0 * 20.0 / 100))
+
+
+def test_a_parameter_three_sd_from_its_prior_is_strained_if_it_was_stated() -> None:
+    def base(x: float) -> Any:
+        return SimpleNamespace(free=[SimpleNamespace(name="inertia", mean=1.0, sd=0.5)], x=[x])
+
+    def fitter(name: str, *, repeated: bool = True) -> Any:
+        parameters = SimpleNamespace(parameters={name: None})
+        return fitter_of(repeated=repeated, case=SimpleNamespace(dataset=parameters))
+
+    assert not strained(fitter("inertia"), base(2.4))
+    assert not strained(fitter("inertia"), base(-0.4))
+    assert strained(fitter("inertia"), base(2.6))
+    assert strained(fitter("inertia"), base(-0.6))
+    assert not strained(fitter("mass"), base(2.6))
+    assert [_may_be_trapped(fitter("inertia", repeated=r), base(x)) for r, x in [(True, 1.0), (True, 3.0)]] == [
+        False,
+        True,
+    ]
+    assert _may_be_trapped(fitter("inertia", repeated=False), base(1.0))
+
+
+def test_fits_start_from_the_best_score_and_from_the_best_of_another_shape() -> None:
+    scores = [
+        Score(9.0, {"a": 1.0, "s": 2.0}, 0.0),
+        Score(8.0, {"a": 3.0, "s": 2.0}, 0.0),
+        Score(7.0, {"a": 1.0, "s": 5.0}, 0.0),
+    ]
+    assert _starts(scores, ["s"]) == ({"a": 1.0, "s": 2.0}, {"a": 1.0, "s": 5.0})
+    assert _starts(scores, []) == ({"a": 1.0, "s": 2.0},)
+    assert _starts(scores[:2], ["s"]) == ({"a": 1.0, "s": 2.0},)
+
+
+def test_the_gain_of_a_candidate_is_that_of_least_squares_with_the_free_parameters(
+    fitter: Fitter, nominal: Fitted
+) -> None:
+    """An offset of the command, nearly linear: its column and those of the free parameters in one dense problem."""
+    (name,) = nominal.system.info.effect("actuation:offset").parameters
+    p = nominal.system.info.parameter(name)
+    unit, amplitude = _unit(fitter.case, p), 0.1
+    start = start_of(nominal.system, "actuation:offset", fitter.case.scales)
+    found = _score(fitter, nominal, "actuation:offset", p, start, amplitude)
+
+    moved = nominal.system.with_effects({"actuation:offset": {name: amplitude * unit}})
+    rows, residual = [], np.concatenate([b.residual for b in nominal.blocks])
+    for t, i in enumerate(fitter.case.train):
+        outputs = fitter.case.run(i, moved, nominal.initial[t])["outputs"]
+        here = [b for b in nominal.blocks if b.experiment == t]
+        changed = nominal.split(t, fitter.whitening[i].residual(outputs))
+        for block, new in zip(here, changed, strict=True):
+            rows.append(np.column_stack([(new - block.residual) / amplitude, block.jacobian]))
+    belief = np.diag([1.0 / AMPLITUDE_SD, *(1.0 / f.sd for f in nominal.free)])
+    matrix = np.concatenate([*rows, belief])
+    target = np.concatenate([-residual, np.zeros(len(belief))])
+
+    def misfit(columns: np.ndarray) -> tuple[np.ndarray, float]:
+        x = np.linalg.lstsq(columns, target, rcond=None)[0]
+        return x, 0.5 * float(np.sum(np.square(columns @ x - target)))
+
+    (best, with_effect), (_, without) = misfit(matrix), misfit(matrix[:, 1:])
+    assert found.gain == pytest.approx(without - with_effect, rel=1e-6)
+    assert found.start[name] == pytest.approx(best[0] * unit, rel=1e-6)
+    information = np.linalg.inv(np.linalg.inv(matrix.T @ matrix)[:1, :1])[0, 0] - AMPLITUDE_SD**-2.0
+    assert found.visibility == pytest.approx(0.5 * information, rel=1e-6)  # of an effect of one unit
