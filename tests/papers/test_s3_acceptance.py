@@ -35,7 +35,7 @@ def closed_offset(record: Record) -> float:
 
 @pytest.fixture(scope="module")
 def fitted() -> Fit:
-    """The two numbers that data tell, from theta_6 at 54 kg."""
+    """All numbers but the steepness of the gate, from theta_6 at 54 kg."""
     return fit_gradient([sine(6)])
 
 
@@ -44,7 +44,7 @@ def test_1_the_exact_law_is_recovered(seed: int) -> None:
     """By both identifications; nothing is asked of mu_s, v_s and s_v, which hide behind the gate."""
     p = paper_parameters()
     record = law_record(run_chain(6, 54.0, SINE, seed=seed), p, seed=100 + seed)
-    for found in (fit_gradient([record]), fit_nelder_mead([record], num_starts=1)):
+    for found in (fit_gradient([record], num_starts=2), fit_nelder_mead([record], num_starts=1)):
         assert found.p.mu_d == pytest.approx(p.mu_d, rel=0.02)
         assert found.p.v_thres == pytest.approx(p.v_thres, rel=0.02)
         assert found.mse == pytest.approx(TORQUE_NOISE_SD**2, rel=0.1)
@@ -56,10 +56,36 @@ def test_2_one_shape_predicts_the_others(fitted: Fit) -> None:
         assert sine(number).mse(fitted.p) <= 0.10
 
 
-def test_3_superposed_torques_are_predicted_much_worse(fitted: Fit) -> None:
-    """Their partial reversals stretch the cable, which opens the gate though the far end is held."""
+def test_2b_every_start_ends_at_the_same_place(fitted: Fit) -> None:
+    """And no worse than the paper's simplex, which ends elsewhere from every start."""
+    ends = fitted.path[fitted.path["steepness"] == fitted.path["steepness"].max()]
+    assert list(ends["start"].unique()) == [0, 1, 2, 3, 4]
+    assert ends["mse"].max() == pytest.approx(ends["mse"].min(), rel=0.01)
+    assert fitted.mse < 0.0256
+
+
+@pytest.mark.parametrize("free", [("mu_d", "mu_s", "v_s", "v_thres"), ("mu_d", "mu_s", "v_thres"), ("mu_d",)])
+def test_2c_no_number_leaves_its_bounds(free: tuple[str, ...]) -> None:
+    """From far off, where an unbounded search lets the threshold underflow."""
+    start = paper_parameters().with_values({"mu_d": 0.5, "mu_s": 0.9, "v_s": 50.0, "v_thres": 0.01})
+    found = fit_gradient([sine(6)], start=start, free=free, num_starts=1, polish=False)
+    fastest = float(sine(6).log["v"].abs().max())
+    assert np.isfinite(found.mse)
+    assert 1e-4 <= found.p.mu_d <= 1.0
+    if "v_thres" in free:
+        assert 1e-3 * fastest <= found.p.v_thres <= fastest
+    else:
+        assert found.p.v_thres == start.v_thres
+    assert np.isfinite(found.p.s_v)
+
+
+def test_3_superposed_torques_are_predicted_worse(fitted: Fit) -> None:
+    """Their partial reversals stretch the cable, which opens the gate though the far end is held: more than twice the
+    error, and most of it is the model's: sensor noise alone leaves 0.0225."""
     for number in (5, 7):
-        assert run_chain(number, 54.0, SUPERPOSED, seed=number).mse(fitted.p) >= 4.0 * fitted.mse
+        error = run_chain(number, 54.0, SUPERPOSED, seed=number).mse(fitted.p)
+        assert 2.0 < error / fitted.mse < 5.0
+        assert error - TORQUE_NOISE_SD**2 > 10.0 * (fitted.mse - TORQUE_NOISE_SD**2)
 
 
 @pytest.mark.parametrize("number", [2, 6, 7, 8])

@@ -1,8 +1,8 @@
 """Both identifications of S3's five numbers side by side: the paper's Nelder–Mead, and exact derivatives.
 
 The gate with its fitted steepness is a step: where a sample lies on one side of the threshold or the other does not
-change with a small change of it, so the objective is flat or jumps. Nelder–Mead therefore ends where it started from;
-derivatives need a soft gate first, which is then made steeper in stages."""
+change with a small change of it, so the objective is flat or jumps. A search from one start ends near it; derivatives
+need a soft gate first, which is then made steeper in stages, and several starts of the threshold."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tendonlab.arguments import whole
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3.compiled import NAMES, CompiledRecord
 from tendonlab.papers.s3.groups import Record
-from tendonlab.papers.s3.rig import FrictionParameters, paper_parameters
+from tendonlab.papers.s3.rig import DEGREE, VELOCITY_UNITS, FrictionParameters, paper_parameters
 
 WEAK_CHANGE, WEAK_RISE = 0.2, 0.05  # a parameter is weak if this change of it raises the error by less than this share
 
@@ -89,33 +89,53 @@ def fit_gradient(
     records: Sequence[Record],
     *,
     start: FrictionParameters | None = None,
-    free: Sequence[str] = ("mu_d", "v_thres"),
+    free: Sequence[str] = NAMES[:4],
+    num_starts: int = 5,
     softest: float = 5.0,
     steepest: float = 1000.0,
     factor: float = 3.0,
     polish: bool = True,
 ) -> Fit:
-    """Least squares with exact derivatives through the recursion of S3 eq. 21, on logarithms, while the gate hardens.
+    """Least squares with exact derivatives through the recursion of S3 eq. 21, on bounded logarithms, while the gate
+    hardens; the best of several starts.
 
-    `free`: which of mu_d, mu_s, v_s, v_thres move; mu_s keeps its ratio to mu_d where it is not free, since data hardly
-    tell (see `weakness`). The gate's steepness s_v v_thres² grows from `softest` by `factor` per stage up to
-    `steepest`; `path` has every stage. The last gate is a step; `polish` then searches the free numbers without
-    derivatives. Raises ParameterError for an unknown name in `free`."""
+    `free`: which of mu_d, mu_s, v_s, v_thres move; mu_s keeps its ratio to mu_d where it is not free. The first start
+    is `start` (the paper's p); the others move its threshold and its Stribeck velocity, by which the error has many
+    minima, over the speeds of the records. The gate's steepness s_v v_thres² grows from `softest` by `factor` per stage
+    up to `steepest`. The last gate is a step; `polish` then searches the free numbers of the best start without
+    derivatives. `path` has every stage of every start. Raises ParameterError for an unknown name in `free`."""
     unknown = [name for name in free if name not in NAMES[:4]]
     if unknown or not free:
         raise ParameterError(f"free = {tuple(free)}: expected some of {', '.join(NAMES[:4])}")
-    objective, p = Objective(records), paper_parameters() if start is None else start
-    rows, steepness = [], softest
-    while True:
-        p = _stage(objective, replace(p, s_v=steepness / p.v_thres**2), free)
-        rows.append({"steepness": steepness, "mse": objective(p), **{n: getattr(p, n) for n in NAMES}})
-        if steepness >= steepest:
-            break
-        steepness = min(steepness * factor, steepest)
+    whole("num_starts", num_starts, 1)
+    objective, first = Objective(records), paper_parameters() if start is None else start
+    fastest = _fastest(records, first)
+    search = _Search(objective, tuple(free), _bounds(fastest))
+    steepnesses = [softest]
+    while steepnesses[-1] < steepest:
+        steepnesses.append(min(steepnesses[-1] * factor, steepest))
+    rows: list[dict[str, float]] = []
+    ends = []
+    for k, p in enumerate(_starts(first, fastest, num_starts)):
+        for steepness in steepnesses:
+            p = search.stage(replace(p, s_v=steepness / p.v_thres**2))
+            rows.append(_row(objective, p, start=k, steepness=steepness))
+        ends.append((rows[-1]["mse"], k, p))
+    _, k, p = min(ends, key=lambda end: end[:2])
     if polish:
-        p = _polished(objective, p, free)
-        rows.append({"steepness": steepness, "mse": objective(p), **{n: getattr(p, n) for n in NAMES}})
+        p = search.polished(p)
+        rows.append(_row(objective, p, start=k, steepness=steepnesses[-1]))
     return Fit(p=p, mse=objective(p), path=pd.DataFrame(rows).rename_axis("stage"))
+
+
+def _starts(first: FrictionParameters, fastest: float, num: int) -> list[FrictionParameters]:
+    """The first start, and others whose thresholds lie among the speeds of the records, below the Stribeck velocity."""
+    thresholds = [float(share * fastest) for share in np.geomspace(0.02, 0.3, num - 1)]
+    return [first, *(replace(first, v_thres=v, v_s=3.0 * v) for v in thresholds)]
+
+
+def _row(objective: Objective, p: FrictionParameters, *, start: int, steepness: float) -> dict[str, float]:
+    return {"start": start, "steepness": steepness, "mse": objective(p), **{n: getattr(p, n) for n in NAMES}}
 
 
 def weakness(records: Sequence[Record], p: FrictionParameters) -> pd.DataFrame:
@@ -146,43 +166,71 @@ def profile(records: Sequence[Record], p: FrictionParameters, name: str, values:
     return pd.Series(errors, index=pd.Index(list(values), name=name), name="mse")
 
 
-def _moved(p: FrictionParameters, free: Sequence[str], x: np.ndarray) -> FrictionParameters:
-    """`p` with its free numbers at exp(x): s_v follows v_thres, and mu_s follows mu_d unless it is free."""
-    moved = p.with_values({name: float(np.exp(v)) for name, v in zip(free, x, strict=True)})
-    if "mu_s" not in free:
-        moved = replace(moved, mu_s=moved.mu_d * p.mu_s / p.mu_d)
-    return replace(moved, s_v=p.s_v * (p.v_thres / moved.v_thres) ** 2)
+def _fastest(records: Sequence[Record], like: FrictionParameters) -> float:
+    """The largest speed of the records, in the unit of `like`."""
+    return max(float(record.log["v"].abs().max()) for record in records) * DEGREE / VELOCITY_UNITS[like.velocity_unit]
 
 
-def _stage(objective: Objective, p: FrictionParameters, free: Sequence[str]) -> FrictionParameters:
-    """The fit at one steepness of the gate."""
+def _bounds(fastest: float) -> dict[str, tuple[float, float]]:
+    """Bounds of the free numbers: beyond them the law no longer changes, and its numbers underflow."""
+    coefficient = (1e-4, 1.0)
+    return {
+        "mu_d": coefficient, "mu_s": coefficient, "v_s": (1e-3 * fastest, 10.0 * fastest),
+        "v_thres": (1e-3 * fastest, fastest),
+    }  # fmt: skip
 
-    def slopes(x: np.ndarray) -> np.ndarray:
-        q = _moved(p, free, x)
-        by = dict(zip(NAMES, objective.slopes(q).T, strict=True))
-        columns = {name: by[name] * getattr(q, name) for name in free}
-        if "v_thres" in free:
-            columns["v_thres"] = columns["v_thres"] - 2.0 * q.s_v * by["s_v"]
-        if "mu_d" in free and "mu_s" not in free:
-            columns["mu_d"] = columns["mu_d"] + q.mu_s * by["mu_s"]
+
+@dataclass(frozen=True)
+class _Search:
+    """A search over the logarithms of the numbers `free`, within bounds by name."""
+
+    objective: Objective
+    free: tuple[str, ...]
+    bounds: dict[str, tuple[float, float]]
+
+    def moved(self, p: FrictionParameters, x: np.ndarray) -> FrictionParameters:
+        """`p` with its free numbers at exp(x): s_v follows v_thres, and mu_s follows mu_d unless it is free."""
+        moved = p.with_values({name: float(np.exp(v)) for name, v in zip(self.free, x, strict=True)})
+        if "mu_s" not in self.free:
+            moved = replace(moved, mu_s=moved.mu_d * p.mu_s / p.mu_d)
+        return replace(moved, s_v=p.s_v * (p.v_thres / moved.v_thres) ** 2)
+
+    def stage(self, p: FrictionParameters) -> FrictionParameters:
+        """The fit at one steepness of the gate."""
+        low, high = np.log([self.bounds[name] for name in self.free]).T
+        inside = 1e-6 * (high - low)
+        found = least_squares(
+            lambda x: self.objective.residual(self.moved(p, x)), np.clip(self._logs(p), low + inside, high - inside),
+            jac=lambda x: self._slopes(self.moved(p, x)), bounds=(low, high), x_scale=0.1, max_nfev=30,
+        )  # fmt: skip
+        return self.moved(p, found.x)
+
+    def polished(self, p: FrictionParameters) -> FrictionParameters:
+        """The best near `p` without derivatives: a scan of the threshold within 10 %, since the error jumps wherever a
+        sample changes sides, then a simplex of 1 % of each free number."""
+        if "v_thres" in self.free:
+            alone = replace(self, free=("v_thres",))
+            factors = np.linspace(0.9, 1.1, 61)
+            nearby = [replace(alone.moved(p, np.log([p.v_thres * f])), mu_s=p.mu_s) for f in factors]
+            p = min([p, *nearby], key=self.objective)
+        x = self._logs(p)
+        simplex = np.vstack([x, x + 0.01 * np.eye(len(x))])
+        options = {"maxiter": 100, "xatol": 1e-4, "fatol": 1e-9, "initial_simplex": simplex}
+        found = minimize(lambda x: self.objective(self.moved(p, x)), x, method="Nelder-Mead", options=options)
+        return min([p, self.moved(p, found.x)], key=self.objective)
+
+    def _logs(self, p: FrictionParameters) -> np.ndarray:
+        return np.log([getattr(p, name) for name in self.free])
+
+    def _slopes(self, p: FrictionParameters) -> np.ndarray:
+        """Derivatives of the residual at `p` by the logarithms of the free numbers."""
+        by = dict(zip(NAMES, self.objective.slopes(p).T, strict=True))
+        columns = {name: by[name] * getattr(p, name) for name in self.free}
+        if "v_thres" in self.free:
+            columns["v_thres"] = columns["v_thres"] - 2.0 * p.s_v * by["s_v"]
+        if "mu_d" in self.free and "mu_s" not in self.free:
+            columns["mu_d"] = columns["mu_d"] + p.mu_s * by["mu_s"]
         return np.column_stack(list(columns.values()))
-
-    x = np.log([getattr(p, name) for name in free])
-    found = least_squares(lambda x: objective.residual(_moved(p, free, x)), x, jac=slopes, x_scale=0.1, max_nfev=30)
-    return _moved(p, free, found.x)
-
-
-def _polished(objective: Objective, p: FrictionParameters, free: Sequence[str]) -> FrictionParameters:
-    """The best near `p` without derivatives: a scan of the threshold within 10 %, since the error jumps wherever a
-    sample changes sides, then a simplex of 1 % of each free number."""
-    if "v_thres" in free:
-        nearby = [_moved(p, ("v_thres",), np.log([p.v_thres * f])) for f in np.linspace(0.9, 1.1, 61)]
-        p = min([p, *nearby], key=objective)
-    x = np.log([getattr(p, name) for name in free])
-    simplex = np.vstack([x, x + 0.01 * np.eye(len(x))])
-    options = {"maxiter": 100, "xatol": 1e-4, "fatol": 1e-9, "initial_simplex": simplex}
-    found = minimize(lambda x: objective(_moved(p, free, x)), x, method="Nelder-Mead", options=options)
-    return _moved(p, free, found.x)
 
 
 def _logs(p: FrictionParameters) -> np.ndarray:
