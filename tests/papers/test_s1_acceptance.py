@@ -192,6 +192,7 @@ def test_everything_in_the_table_of_differences_is_within() -> None:
     found = s1.differences()
     assert found["within"].all(), found[~found["within"]]
     assert len(found) == 26
+    assert found["status"].str.startswith("paper").sum() == 4
 
 
 def test_the_papers_own_gap_is_diagnosed(tmp_path: Path) -> None:

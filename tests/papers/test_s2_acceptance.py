@@ -13,8 +13,8 @@ GEAR = {"alpha": RIG.alpha, "beta": RIG.beta}
 
 def test_the_table_of_differences_holds() -> None:
     found = s2.differences(RIG)
-    assert list(found.columns) == ["printed", "computed", "difference", "tolerance", "within"]
     assert found["within"].all(), found[~found["within"]]
+    assert (found["status"] == "paper").sum() == 36  # Tables I and II
 
 
 def gear_fit(seed: int) -> s2.Estimate:

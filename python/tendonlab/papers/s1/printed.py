@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.mechanics.tendons import back_driven_efficiency
+from tendonlab.papers.compared import PAPER, RECONSTRUCTED, Number, compared
 from tendonlab.papers.s1.bearing import RPM, BallBearing
 from tendonlab.papers.s1.device import example_device
 from tendonlab.papers.s1.experiments import compensated, effect_sizes, strategies
@@ -18,24 +19,27 @@ EXAMPLE_VELOCITY = np.array([0.4, 0.3, -0.5, 0.6])  # rad/s [reconstructed]
 
 
 def differences() -> pd.DataFrame:
-    """One row per number: `printed`, `computed`, their `difference`, the `tolerance` and whether it is `within`. The
-    first rows are stated in the paper, and the last of them as a bound ("more than"); the others, `status` recomputed,
-    come from a separate computation on the reconstructed device, since the paper prints no data of its own."""
+    """One row per number, as `compared` gives them. The first rows are stated in the paper, the last of them as a bound
+    ("more than"); the others come from a separate computation on the reconstructed device, since the paper prints no
+    data of its own."""
     computed = {**_stated(), **_statics(), **_identified(), **_compensated()}
-    rows = [
-        ("degrees of freedom", float(_fact("degrees of freedom of the L-EXOS")), 0.0, "paper"),
-        ("joints with a reducer", len(_fact("joints with an epicycloidal reducer").split(";")), 0.0, "paper"),
-        ("exponent of the bearing's speed law", float(_fact("exponent of the bearing speed law")), 1e-9, "paper"),
-        (BOUND, float(_fact("reduction of friction effects by compensation")) / 100, 0.0, "paper, bound"),
+    rows: list[Row] = [
+        ("degrees of freedom", "1", float(_fact("degrees of freedom of the L-EXOS")), 0.0, PAPER),
+        ("joints with a reducer", "1", len(_fact("joints with an epicycloidal reducer").split(";")), 0.0, PAPER),
+        ("exponent of the bearing's speed law", "1", float(_fact("exponent of the bearing speed law")), 1e-9, PAPER),
+        (BOUND, "1", float(_fact("reduction of friction effects by compensation")) / 100, 0.0, PAPER),
     ]
     reference = table("S1_reference_values")
-    rows += list(reference[["quantity", "value", "tolerance", "status"]].itertuples(index=False, name=None))
-    frame = pd.DataFrame(rows, columns=["quantity", "printed", "tolerance", "status"]).set_index("quantity")
-    frame.insert(1, "computed", pd.Series(computed))
-    frame.insert(2, "difference", frame["computed"] - frame["printed"])
-    within = frame["difference"].abs() <= frame["tolerance"]
-    bound = frame["status"].str.endswith("bound")
-    return frame.assign(within=within.where(~bound, frame["difference"] > 0))
+    rows += [
+        (str(name), str(unit).replace("*", "·"), float(value), float(tolerance), RECONSTRUCTED)
+        for name, value, unit, tolerance in reference[["quantity", "value", "unit", "tolerance"]].itertuples(
+            index=False
+        )
+    ]
+    return compared(
+        Number(name, unit, status, expected, computed[name], tolerance, bound=name == BOUND)
+        for name, unit, expected, tolerance, status in rows
+    )
 
 
 def _fact(quantity: str) -> str:
@@ -43,6 +47,7 @@ def _fact(quantity: str) -> str:
     return str(facts.loc[facts["quantity"] == quantity, "value"].iloc[0])
 
 
+Row = tuple[str, str, float, float, str]  # quantity, unit, expected, tolerance, status
 BOUND = "reduction by compensation, more than"
 
 

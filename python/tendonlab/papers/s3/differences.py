@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import pandas as pd
 
+from tendonlab.papers.compared import DERIVED, PAPER, RECONSTRUCTED, TWIN, Number, compared
 from tendonlab.papers.s3.fit import Fit
 from tendonlab.papers.s3.groups import Record
 from tendonlab.papers.s3.rig import assumed_rig, cable_pretension, paper_parameters
@@ -15,64 +16,57 @@ from tendonlab.papers.s3.statics import TransmissionCoefficients
 from tendonlab.papers.s3.trajectories import table_1
 from tendonlab.papers.tables import table
 
-Row = tuple[str, str, float, float, float]  # quantity, where from, printed, computed, tolerance (absolute)
-
 
 def differences(fit: Fit, recovered: Fit, records: Mapping[int, Record]) -> pd.DataFrame:
-    """One row per number: printed, computed, difference, tolerance, and whether the difference is within.
+    """One row per number, as `compared` gives them.
 
-    `fit`: of the twin's theta_6. `recovered`: of data that obey the paper's law exactly. `records`: sines of the twin
-    at 54 kg by shape number, with 2, 7 and 8."""
-    rows = [*_tables(), *_shapes(), *_recovery(recovered), *_twin(fit, records)]
-    frame = pd.DataFrame(rows, columns=["quantity", "source", "printed", "computed", "tolerance"])
-    frame.insert(4, "difference", frame["computed"] - frame["printed"])
-    return frame.assign(within=frame["difference"].abs() <= frame["tolerance"]).set_index("quantity")
+    `fit`: of the twin's theta_6, of mu_d and v_thres alone. `recovered`: of data that obey the paper's law exactly.
+    `records`: sines of the twin at 54 kg by shape number, with 2, 7 and 8."""
+    return compared([*_tables(), *_shapes(), *_recovery(recovered), *_twin(fit, records)])
 
 
-def _tables() -> Iterator[Row]:
+def _tables() -> Iterator[Number]:
     for row in table("S3_fig5b_pretension").to_dict("records"):
-        reading, printed = float(row["load_cell_kg"]), float(row["T_s_per_cable_N"])
-        yield f"T_s at {reading:g} kg (N)", "Fig. 5b", printed, cable_pretension(reading), 1e-7
+        reading, expected = float(row["load_cell_kg"]), float(row["T_s_per_cable_N"])
+        name = f"Fig. 5b: T_s at {reading:g} kg"
+        yield Number(name, "N", DERIVED, expected, cable_pretension(reading), 1e-7)
     sines = table_1()[:3]  # the period of the superposed torque is not printed
-    for printed, trajectory in zip(table("S3_table1_dataset")["frequency_hz"][:3], sines, strict=True):
-        yield (
-            f"frequency of a {trajectory.period:g} s sine (Hz)",
-            "Table I",
-            _number(printed),
-            trajectory.frequency,
-            1e-9,
-        )
+    for expected, trajectory in zip(table("S3_table1_dataset")["frequency_hz"][:3], sines, strict=True):
+        name = f"Table I: frequency of a {trajectory.period:g} s sine"
+        yield Number(name, "Hz", DERIVED, _number(expected), trajectory.frequency, 1e-9)
 
 
-def _shapes() -> Iterator[Row]:
-    for printed, shape, name in zip(
+def _shapes() -> Iterator[Number]:
+    for expected, shape, name in zip(
         table("S3_shapes")["assumed_wrap_angle_rad"], paper_shapes(), table("S3_shapes")["shape"], strict=True
     ):
-        yield f"wrap angle of {name} (rad)", "Fig. 4, assumed family", float(printed), shape.wrap_angle, 1e-6
+        yield Number(f"Fig. 4: wrap angle of {name}", "rad", RECONSTRUCTED, float(expected), shape.wrap_angle, 1e-6)
 
 
-def _recovery(recovered: Fit) -> Iterator[Row]:
+def _recovery(recovered: Fit) -> Iterator[Number]:
     p = paper_parameters()
-    yield "mu_d from data of the law", "p in the text", p.mu_d, recovered.p.mu_d, 0.02 * p.mu_d
-    yield "v_thres from data of the law (deg/s)", "p in the text", p.v_thres, recovered.p.v_thres, 0.02 * p.v_thres
+    yield Number("p: mu_d, from data of the law", "1", PAPER, p.mu_d, recovered.p.mu_d, 0.02 * p.mu_d)
+    yield Number("p: v_thres, from data of the law", "deg/s", PAPER, p.v_thres, recovered.p.v_thres, 0.02 * p.v_thres)
 
 
-def _twin(fit: Fit, records: Mapping[int, Record]) -> Iterator[Row]:
+def _twin(fit: Fit, records: Mapping[int, Record]) -> Iterator[Number]:
     """Own results of an earlier twin: tolerances cover seeds and solvers."""
     own, rig = table("S3_twin_results").set_index("case"), assumed_rig()
-    yield "MSE of the fit on theta_6 (N²m²)", "twin", _number(own.at["fit", "mse_after_fit_on_theta6"]), fit.mse, 0.05
+    expected = _number(own.at["fit", "mse_after_fit_on_theta6"])
+    yield Number("MSE of the fit of two numbers on theta_6", "N²m²", TWIN, expected, fit.mse, 0.05)
     for number in (2, 7, 8):
         row, record = own.loc[f"shape{number}"], records[number]
         law = TransmissionCoefficients.of(
             record.shape, mu=fit.p.mu_d, T_s=record.pretension, r_in=rig.r_in, r_out=rig.r_out
         )
         found = sliding_regression(record, v_thres=paper_parameters().v_thres)
-        of, told = f"theta_{number}", "twin"
-        model = _number(row["model_offset_Nm"])  # fits of other data agree on mu_d to 4 %
-        yield f"offset of the fitted model, {of} (N m)", told, model, law.offset, 0.04 * abs(model)
-        yield f"sliding slope of {of}", told, _number(row["sliding_slope"]), found.slope, 0.01
-        yield f"sliding offset of {of} (N m)", told, _number(row["sliding_offset_Nm"]), found.offset, 0.08 * -law.offset
-        yield f"MSE predicted on {of} (N²m²)", told, _number(row["mse_after_fit_on_theta6"]), record.mse(fit.p), 0.05
+        model, offset = _number(row["model_offset_Nm"]), _number(row["sliding_offset_Nm"])
+        of = f"theta_{number}"  # fits of other data agree on mu_d to 4 %
+        yield Number(f"offset of the fitted model, {of}", "N·m", TWIN, model, law.offset, 0.04 * abs(model))
+        yield Number(f"sliding slope of {of}", "1", TWIN, _number(row["sliding_slope"]), found.slope, 0.01)
+        yield Number(f"sliding offset of {of}", "N·m", TWIN, offset, found.offset, 0.08 * -law.offset)
+        expected = _number(row["mse_after_fit_on_theta6"])
+        yield Number(f"MSE predicted on {of}", "N²m²", TWIN, expected, record.mse(fit.p), 0.05)
 
 
 def _number(cell: object) -> float:

@@ -16,7 +16,7 @@ from tendonlab.papers.s4.constants import (
     identified,
     joint,
 )
-from tendonlab.papers.s4.dataset import Nominal, nominal, softer, write_rig
+from tendonlab.papers.s4.dataset import JITTER, Nominal, nominal, softer, write_rig
 from tendonlab.papers.s4.drive import Drive, printed_drive
 from tendonlab.papers.s4.dynamic import identify_dynamic
 from tendonlab.papers.s4.identification import (
@@ -30,8 +30,8 @@ from tendonlab.papers.s4.library import simulate, simulator, tension_simulator
 from tendonlab.papers.s4.line_contact import LineContactLuGre
 from tendonlab.papers.s4.metrics import dwell, error_levels, loop_width, nrmse, spread, synchronous_error
 from tendonlab.papers.s4.play import capstan_play, saturation
-from tendonlab.papers.s4.printed import compare, differences
 from tendonlab.papers.s4.rig import Case, case, cases, measured, run_rig
+from tendonlab.papers.s4.rounding import fit_rounded
 from tendonlab.papers.s4.statics import (
     Tensions,
     WrapAngles,
@@ -53,6 +53,7 @@ from tendonlab.papers.s4.twin import TENSIONS, CcsrmModel
 __all__ = [
     "ENCODER_BITS",
     "ERROR_ON_THE_RIG",
+    "JITTER",
     "RESOLUTION",
     "TENSIONS",
     "Case",
@@ -72,13 +73,12 @@ __all__ = [
     "capstan_ratio",
     "case",
     "cases",
-    "compare",
     "contact",
     "design",
-    "differences",
     "dwell",
     "equilibrium_error",
     "error_levels",
+    "fit_rounded",
     "fit_tensions",
     "friction_coefficient",
     "frictionless_stiffness",

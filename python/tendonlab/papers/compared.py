@@ -1,0 +1,66 @@
+"""Expected and computed numbers side by side, and where each expected one comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, NamedTuple
+
+import pandas as pd
+
+from tendonlab.arguments import choice
+
+if TYPE_CHECKING:
+    from pandas.io.formats.style import Styler
+
+PAPER, DERIVED, RECONSTRUCTED, TWIN = STATUSES = ("paper", "derived", "reconstructed", "twin")
+COLUMNS = ("unit", "status", "expected", "computed", "difference", "tolerance", "within")
+
+
+class Number(NamedTuple):
+    """One number that can be computed: what it is, its unit, where its expected value comes from (`status`), the
+    expected and the computed value, and how far they may differ.
+
+    "paper": printed in the paper. "derived": follows from printed numbers by the equations. "reconstructed": computed
+    separately from values that the paper does not print. "twin": read off a twin, so that agreement shows only that the
+    reconstruction is consistent. `bound`: the paper states a lower bound."""
+
+    quantity: str
+    unit: str
+    status: str
+    expected: float
+    computed: float
+    tolerance: float
+    bound: bool = False
+
+    @property
+    def within(self) -> bool:
+        """Whether they differ by no more than the tolerance, or the bound is exceeded."""
+        difference = self.computed - self.expected
+        return difference > 0 if self.bound else abs(difference) <= self.tolerance
+
+
+def compared(numbers: Iterable[Number]) -> pd.DataFrame:
+    """The table of all numbers, by quantity. Raises ParameterError for an unknown status."""
+    rows = []
+    for number in numbers:
+        choice("status", number.status, STATUSES)
+        computed = float(number.computed)
+        rows.append(
+            {
+                "quantity": number.quantity,
+                "unit": number.unit,
+                "status": number.status + (", lower bound" if number.bound else ""),
+                "expected": float(number.expected),
+                "computed": computed,
+                "difference": computed - number.expected,
+                "tolerance": number.tolerance,
+                "within": number.within,
+            }
+        )
+    return pd.DataFrame(rows).set_index("quantity")[list(COLUMNS)]
+
+
+def shown(table: pd.DataFrame) -> Styler:
+    """The table for a notebook: five digits of the values, two of differences and tolerances."""
+    formats = {"expected": "{:.5g}", "computed": "{:.5g}", "difference": "{:.1g}", "tolerance": "{:.1g}"}
+    return table.style.format(formats)
