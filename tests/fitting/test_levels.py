@@ -90,3 +90,18 @@ def test_the_injection_is_softer_for_a_noisier_sensor(twin_case: Any) -> None:
         replay = choose_replay(noisy, twin_case.system)
         assert replay.kind == "injection"
         assert replay.kp == pytest.approx(0.01 * np.sqrt(np.mean(command**2)) / noise)
+
+
+def test_shares_are_those_of_each_output_alone(nominal: Fitted) -> None:
+    """Residuals of the first output stay for ten rows and those of the second are independent; the third has none."""
+    random = np.random.default_rng(0)
+    slow, quick = np.repeat(random.standard_normal(300), 10), random.standard_normal(3000)
+    run = replace(
+        nominal.runs[0],
+        residual=np.concatenate([slow, quick]),
+        output=np.repeat([0, 1], 3000),
+        block=np.zeros(6000, dtype=int),
+    )
+    three = replace(nominal, runs=(run, run), levels=np.array([2.0, 3.0, 4.0]), known=np.array([0.1, 9.0, 0.1]))
+    assert three.own_shares == pytest.approx([0.1, 1.0, 1.0], rel=0.25)
+    assert three.own_levels == pytest.approx([2.0, 9.0, 4.0], rel=0.1)  # of the second more noise is known
