@@ -40,7 +40,8 @@ def diagnose(
     The logs are checked first, as `tendonlab.check` does: a wrong sign, scale or clock ends it with the verdict
     "data_fault", unless `force`. Outliers are left out.
 
-    `library`: "default", every effect that the system takes, or names as "joint:stribeck". `seed`: the bootstrap's.
+    `library`: "default", every effect that the system takes, or names as "joint:stribeck"; a law that is the whole
+    friction of its element is swapped in only where it is named. `seed`: the bootstrap's.
     Raises DatasetError for a signal that the replay needs and was not logged, ParameterError for an unknown effect or a
     `seed` that is no whole number. Ctrl-C stops it. How it works: docs/method.md."""
     require_dataset(dataset)
@@ -62,7 +63,7 @@ def diagnose(
         fitter, tuned = renewed(fitter, tuned, shop.pool)
         search = select_effects(fitter, tuned, shop)
         log.info("selected %s", search.selected)
-        why = answer(search, nominal, seed=seed, seconds=lambda: time.monotonic() - began)
+        why = answer(search, nominal, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
     return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
 

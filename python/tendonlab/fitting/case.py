@@ -150,9 +150,10 @@ class Case:
         )
 
     def _conditions(self, i: int) -> tuple[dict[int, float], dict[int, float]]:
-        """Parameters that experiment i fixes, and those it adds to; other names are covariates."""
-        own = set(self.system.parameters)
-        index = {p.name: k for k, p in enumerate(self.system.info.parameters) if p.name in own}
+        """Parameters that experiment i fixes, and those it adds to; other names are covariates. Conditions of an effect
+        that the simulator lacks count as well: a candidate may have it."""
+        own, rows = set(self.system.parameters), self.system.info.parameters
+        index = {p.name: k for k, p in enumerate(rows) if p.name in own or p.purpose == "condition"}
         experiment = self.experiments[i]
         fixed = {index[name]: value for name, value in experiment.conditions.items() if name in index}
         added = {index[name]: value for name, value in experiment.add.items() if name in index}

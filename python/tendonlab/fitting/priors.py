@@ -77,6 +77,8 @@ def free_parameters(
         if p.name not in system.parameters or p.purpose == "share":
             continue
         scale = (of.get(p.element or "") or next(iter(of.values()))).of(p.dimension) * abs(p.typical)
+        if p.name in new and p.purpose == "condition":
+            continue
         if p.name in new:
             rows.append(_effect_parameter(index, p, scale, system.parameters[p.name]))
             continue

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pandas as pd
 
@@ -62,5 +62,9 @@ def compared(numbers: Iterable[Number]) -> pd.DataFrame:
 
 def shown(table: pd.DataFrame) -> Styler:
     """The table for a notebook: five digits of the values, two of differences and tolerances."""
-    formats = {"expected": "{:.5g}", "computed": "{:.5g}", "difference": "{:.1g}", "tolerance": "{:.1g}"}
+    values, errors = (
+        dict.fromkeys(("expected", "computed"), "{:.5g}"),
+        dict.fromkeys(("difference", "tolerance"), "{:.1g}"),
+    )
+    formats: dict[Any, Any] = {**values, **errors}
     return table.style.format(formats)

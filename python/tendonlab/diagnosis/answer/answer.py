@@ -23,8 +23,11 @@ from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import Diagnosis, Overlay
 
 
-def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], float]) -> Diagnosis:
-    """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone."""
+def answer(
+    search: Search, nominal: Fitted, *, library: Sequence[str] | None, seed: int, seconds: Callable[[], float]
+) -> Diagnosis:
+    """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone;
+    `library`: names of the effects that were asked for (None: all)."""
     fitter = search.fitter
     case, floor = fitter.case, fitter.floor
     judged = case.test or case.train
@@ -68,7 +71,11 @@ def answer(search: Search, nominal: Fitted, *, seed: int, seconds: Callable[[], 
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
         next_experiments=tuple(_next(case, floor, search) + _measurements(verdict.indistinguishable)),
-        warnings=(*notes.warnings(case, floor, search), *notes.not_improved(held_out, search.selected)),
+        warnings=(
+            *notes.warnings(case, floor, search),
+            *notes.not_asked(case, search, library),
+            *notes.not_improved(held_out, search.selected),
+        ),
         units=notes.units(case),
         overlay=_overlay(case, stages, floor, judged),
         where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),

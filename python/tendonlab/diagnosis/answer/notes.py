@@ -22,7 +22,13 @@ UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatab
 
 def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
     """What weakens the answer."""
-    return [*case.dataset.warnings, *_on_the_floor(floor), *_on_the_split(case), *_on_the_fits(search)]
+    return [
+        *case.dataset.warnings,
+        *_on_the_floor(floor),
+        *_on_the_split(case),
+        *_on_the_fits(search),
+        *_on_the_failed(search),
+    ]
 
 
 def _on_the_floor(floor: Floor) -> list[str]:
@@ -62,6 +68,22 @@ def _on_the_fits(search: Search) -> list[str]:
             name = f"the model with {', '.join(model.added)}" if model.added else "the refitted simulator"
             messages.append(f"The fit of {name} did not converge: {model.message}.")
     return messages
+
+
+def _on_the_failed(search: Search) -> list[str]:
+    failed = dict.fromkeys(effect for contest in search.rounds for effect in contest.failed)
+    tried = {trial.effect for contest in search.rounds for trial in contest.trials}
+    names = [effect for effect in failed if effect not in tried]
+    return [f"No fit with {', '.join(names)} succeeded, so nothing is known of it."] if names else []
+
+
+def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list[str]:
+    """A warning about effects that were asked for by name and could not be tried."""
+    tried = {screened.effect for contest in search.rounds for screened in contest.screened}
+    tried |= {trial.effect for contest in search.rounds for trial in contest.trials}
+    names = [name for name in library or () if name not in tried and name not in case.system.effects]
+    reason = "it requires an effect that the simulator lacks, or a signal that was not measured, or replaces nothing"
+    return [f"Asked for and not tried: {', '.join(names)} ({reason})."] if names else []
 
 
 def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:

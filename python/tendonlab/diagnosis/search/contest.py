@@ -27,8 +27,8 @@ MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this sha
 @dataclass(frozen=True)
 class Round:
     """The contest for one effect in addition to those of `base`: all candidates as screened, the trials best first, the
-    probability of each effect (key None: no further effect), the trial that was accepted, and the effects that are
-    `established`."""
+    probability of each effect (key None: no further effect), the trial that was accepted, the effects that are
+    `established`, and those of which every fit `failed`."""
 
     base: tuple[str, ...]
     screened: tuple[Screened, ...]
@@ -36,6 +36,7 @@ class Round:
     probability: dict[str | None, float]
     accepted: Trial | None
     established: Set[str]
+    failed: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -47,11 +48,12 @@ class Round:
         established: Set[str],
         bar: Bar,
         accepted: Trial | None,
+        failed: Sequence[str] = (),
     ) -> Round:
         """The round of `trials`, best first, of which one, or none, is accepted."""
         temperature = TEMPERATURE * max([1.0, min((t.fitted.whitened_square for t in trials), default=1.0)])
         probability = probabilities(trials, established, bar, temperature)
-        return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established)
+        return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, tuple(failed))
 
 
 def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Workshop) -> Round | None:
@@ -73,7 +75,9 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader and not _worth_adding(fitter, base, trials, further=further):
         leader, established = None, set()
-    return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader)
+    fitted = {t.effect for t in trials}
+    failed = [s.effect for s in chosen if s.effect not in fitted]
+    return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader, failed=failed)
 
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from tendonlab.diagnosis.search.halves import NEAR_FLOOR
 from tendonlab.diagnosis.search.screen import Screened
+from tendonlab.diagnosis.search.swap import extended
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -62,7 +63,7 @@ def _fit(
     added = (*base.added, *effect)
     goal = _goal(fitter, base, best, pace)
     try:
-        system, initial = base.system.with_effects(effect), base.initial
+        system, initial = extended(base.system, effect), base.initial
         if from_nominal:
             system, initial = _cooled(fitter, base, system, added)
         fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH, goal=goal)
@@ -100,7 +101,8 @@ def _cooled(
 
     Under so much noise, parameters that the data hardly determine stay at their nominal values."""
     stated = fitter.case.dataset.parameters
-    system = system.with_parameters({f.name: f.value(f.mean) for f in base.free if f.name in stated})
+    believed = [f for f in base.free if f.name in stated and f.name in system.parameters]
+    system = system.with_parameters({f.name: f.value(f.mean) for f in believed})
     fit = fitter.fit(system, added=added, solve=False)
     misfit = fit.whitened_square
     for _ in range(NUM_COOLINGS):

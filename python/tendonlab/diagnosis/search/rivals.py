@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effect
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
+from tendonlab.diagnosis.search.swap import extended
 from tendonlab.diagnosis.search.trial import DETECT, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
@@ -143,4 +144,5 @@ def drop_effects(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> Syste
     nominal = fitter.case.system
     kept = [name for name in model.added if name not in effects]
     values = {name: {p: own[p] for p in nominal.info.effect(name).parameters if p in own} for name in kept}
-    return nominal.with_parameters({name: own[name] for name in nominal.parameters}).with_effects(values)
+    tuned = nominal.with_parameters({name: own[name] for name in nominal.parameters if name in own})
+    return extended(tuned, values)

@@ -5,11 +5,13 @@ of the change in its residuals gives the gain that a refit may be expected to br
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from tendonlab.diagnosis.search.swap import can_replace, extended
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -18,6 +20,7 @@ from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
+WHOLE_SHAPES = (0.3, 1.0, 3.0)  # of the typical first shape of a whole friction
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
 INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
 
@@ -43,15 +46,22 @@ class _Score:
     visibility: float
 
 
-def candidates(case: Case, base: Fitted) -> list[str]:
-    """Effects of the library that `base` lacks and that these data could show; a whole curve is no effect."""
+def candidates(case: Case, base: Fitted, asked: Sequence[str] | None = None) -> list[str]:
+    """Effects of the library that `base` lacks and that these data could show: those `asked` for by name (None: all).
+
+    A whole friction is tried where it is asked for and has another one to replace."""
     info = case.system.info
     measured = {info.outputs[c].name for c in case.measured}
 
     def applies(e: EffectInfo) -> bool:
         unmeasured = e.element.startswith("sensor.") and e.element.removeprefix("sensor.") not in measured
         present = e.name in base.system.effects
-        return not (e.structural or e.roles & WHOLE or unmeasured or present) and _requirements_met(e, base)
+        named = asked is None or e.name in asked
+        if not named or e.structural or unmeasured or present:
+            return False
+        if e.roles & WHOLE:
+            return asked is not None and can_replace(e, base.system, base.added)
+        return _requirements_met(e, base)
 
     return [e.name for e in info.effects if applies(e)]
 
@@ -72,6 +82,8 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     case = fitter.case
     info = case.system.info
     rows = [info.parameter(name) for name in info.effect(effect).parameters]
+    if info.effect(effect).roles & WHOLE:
+        return _whole(case, base, effect, rows)
     start = start_of(base.system, effect, case.scales)
     shapes = [p.name for p in rows if p.purpose == "shape"]
     scores: list[_Score] = []
@@ -88,6 +100,17 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
         return Screened(effect, 0.0, ({**start, **typical},), 0.0, simulated=False)
     scores.sort(key=lambda s: -s.gain)
     return Screened(effect, scores[0].gain, _starts(scores, shapes[:1]), max(s.visibility for s in scores))
+
+
+def _whole(case: Case, base: Fitted, effect: str, rows: Sequence[ParameterInfo]) -> Screened:
+    """A whole friction is no small change, which a slope could judge: it is always refitted, from typical amplitudes
+    and several values of its first shape."""
+    start = start_of(base.system, effect, case.scales)
+    start |= {p.name: _unit(case, p) for p in rows if p.amplitude}
+    first = next((p.name for p in rows if p.purpose == "shape"), None)
+    starts = tuple({**start, first: start[first] * factor} for factor in WHOLE_SHAPES) if first else (start,)
+    most = base.cost  # more than that no model gains
+    return Screened(effect, most, starts, most)
 
 
 def _starts(scores: list[_Score], shape: list[str]) -> tuple[dict[str, float], ...]:
@@ -135,7 +158,7 @@ def _products(base: Fitted, directions: list[np.ndarray]) -> tuple[Any, ...]:
 
 def _residuals_with(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> list[np.ndarray]:
     """Whitened residuals of the training experiments at `base` with `effect` at `values`, in block order."""
-    case, system = fitter.case, base.system.with_effects({effect: values})
+    case, system = fitter.case, extended(base.system, {effect: values})
     blocks: list[np.ndarray] = []
     for t, i in enumerate(case.train):
         outputs = case.run(i, system, base.initial[t])["outputs"]

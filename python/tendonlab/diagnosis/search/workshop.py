@@ -28,7 +28,7 @@ class Workshop:
 
     def screen_all(self, fitter: Fitter, base: Fitted, label: str) -> list[Screened]:
         """All candidates as the screen sees them, most promising first."""
-        names = [c for c in candidates(fitter.case, base) if self.library is None or c in self.library]
+        names = candidates(fitter.case, base, self.library)
         all_rows = base.counted()  # the memory of the base's residuals would hide every lead
         work = self.pool.map(lambda name: screen(fitter, all_rows, name), names)
         shown = track(work, label=f"screen {label}", total=len(names), unit="effect", shown=self.progress, stays=False)

@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
+from tendonlab.papers.s0 import twin
 from tendonlab.papers.s0.bearings import relative_load
-from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, configuration, loaded
+from tendonlab.papers.s0.bench import LOADS, NUM_RUNS, Configuration, configuration, loaded
 from tendonlab.papers.s0.maps import twin_map
 from tendonlab.papers.s0.models import Lugre, Proposed, printed_lugre
 from tendonlab.seed import generator
@@ -19,6 +20,7 @@ from tendonlab.simulation.system import System
 LUGRE, PROPOSED = ("contact:static_lugre", "contact:viscous"), ("contact:load_and_ratio",)
 PASSES = 4  # maps of each configuration; the runs of a point are dealt out among them
 HELD_OUT = 1  # of them
+INTERVAL = 0.2  # s from point to point: steady points have no time, and this gives them an order
 
 
 def lugre_system(model: Lugre) -> System:
@@ -33,17 +35,22 @@ def proposed_system(model: Proposed, *, ratio: float) -> System:
     return System(kind="friction_map", effects=PROPOSED, parameters=values)
 
 
-def load_dataset(transmission: str, *, seed: int = 0) -> Dataset:
+def load_dataset(
+    transmission: str,
+    *,
+    seed: int = 0,
+    law: Callable[[Configuration, np.ndarray], np.ndarray] = twin.friction,
+) -> Dataset:
     """Twin maps of a transmission under its four loads, and the static LuGre simulator with the values of S0 Table 6
     or 7: the load, that the simulator lacks, is withheld.
 
     Each load is mapped in four passes of five runs per point in both directions; the passes repeat one another, the
-    last is held out. Everything is reconstructed."""
+    last is held out. Everything is reconstructed. `law`: the friction of the twin, `twin.friction`, or
+    `twin.proposed_friction`, which is S0 eq. 11."""
     rng = generator(seed)
     ratio = configuration(transmission).ratio()
-    experiments = [
-        _experiment(transmission, load, k, ratio=ratio, rng=rng) for load in LOADS for k in range(1, PASSES + 1)
-    ]
+    passes = [(load, k) for load in LOADS for k in range(1, PASSES + 1)]
+    experiments = [_experiment(transmission, load, k, ratio=ratio, rng=rng, law=law) for load, k in passes]
     values = _lugre_values(printed_lugre(transmission))
     alpha = "contact_lugre_stribeck_exponent"
     parameters = {
@@ -113,11 +120,19 @@ def _error(model: Callable[[np.ndarray, float], np.ndarray], experiment: Experim
     return np.asarray(found - data["friction_torque"].to_numpy())
 
 
-def _experiment(transmission: str, load: str, k: int, *, ratio: float, rng: np.random.Generator) -> Experiment:
+def _experiment(
+    transmission: str,
+    load: str,
+    k: int,
+    *,
+    ratio: float,
+    rng: np.random.Generator,
+    law: Callable[[Configuration, np.ndarray], np.ndarray],
+) -> Experiment:
     of = loaded(transmission, load)
-    points = twin_map(of, num_runs=NUM_RUNS // PASSES, seed=rng)
+    points = twin_map(of, num_runs=NUM_RUNS // PASSES, seed=rng, law=law)
     frame = pd.DataFrame({"speed": points["speed"], "friction_torque": points["torque"]})
-    frame.index = pd.Index(np.arange(len(frame), dtype=float), name="t")
+    frame.index = pd.Index(INTERVAL * np.arange(len(frame)), name="t")
     return Experiment(
         name=f"{of.name} pass {k}",
         data=frame,

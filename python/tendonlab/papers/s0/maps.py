@@ -19,14 +19,19 @@ FINE = np.arange(1.0, 105.01, 0.25)  # rad/s, on which peaks and valleys are sou
 
 
 def twin_map(
-    of: Configuration, *, num_runs: int = NUM_RUNS, both_signs: bool = True, seed: int | np.random.Generator = 0
+    of: Configuration,
+    *,
+    num_runs: int = NUM_RUNS,
+    both_signs: bool = True,
+    seed: int | np.random.Generator = 0,
+    law: Callable[[Configuration, np.ndarray], np.ndarray] = twin.friction,
 ) -> pd.DataFrame:
     """The twin's friction map of a configuration: `speed` rad/s, `torque` N·m (mean of `num_runs` runs), `sd` N·m of
-    one run, `num_runs`; one row per point, in order of speed.
+    one run, `num_runs`; one row per point, in order of speed. `law`: the friction of the twin.
 
     Raises ParameterError for less than one run."""
     speed = np.concatenate([-twin.SPEEDS[::-1], twin.SPEEDS]) if both_signs else twin.SPEEDS
-    torque, sd = twin.measured(of, speed, num_runs=num_runs, seed=seed)
+    torque, sd = twin.measured(of, speed, num_runs=num_runs, seed=seed, law=law)
     return pd.DataFrame({"speed": speed, "torque": torque, "sd": sd, "num_runs": num_runs})
 
 

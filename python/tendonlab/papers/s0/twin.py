@@ -4,6 +4,7 @@ library. Nothing here was measured."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
@@ -76,20 +77,39 @@ def friction(of: Configuration, speed: np.ndarray | float) -> np.ndarray:
     return np.asarray(np.sign(speed) * torque)
 
 
+def proposed_friction(of: Configuration, speed: np.ndarray | float) -> np.ndarray:
+    """Friction torque, N·m, of a second twin, whose friction is S0 eq. 11 itself, with the set drawn from Table 8
+    (reconstructed); odd in speed. Like the first it shares no law with the library."""
+    rows = table("S0_reconstructed_parameters")
+    own = rows[(rows["transmission"] == of.transmission) & (rows["set"] == "table8_set")].set_index("symbol")["value"]
+    if own.empty:
+        raise ParameterError(f"transmission = {of.transmission!r}: Table 8 has C25P104GX and C35P75GX")
+    w, load, n = np.abs(np.asarray(speed, dtype=float)), relative_load(of), of.ratio()
+    level = own["F_c"] * (1 + load)
+    peak = (own["F_s"] + level * w ** own["beta"]) * np.exp(-((w / own["theta_s"]) ** own["alpha"]))
+    viscous = own["F_v"] * ((n**2 + 1) / n**2 * w + (w / load) ** own["gamma"])
+    return np.asarray(np.sign(speed) * (level * w ** own["delta"] + peak + viscous))
+
+
 def noise_sd(torque: np.ndarray | float) -> np.ndarray:
     """Sd of one run's mean torque about the map, N·m: 3 % and 1 mN·m (reconstructed)."""
     return np.asarray(RELATIVE_NOISE * np.abs(torque) + ABSOLUTE_NOISE)
 
 
 def measured(
-    of: Configuration, speed: np.ndarray, *, num_runs: int, seed: int | np.random.Generator = 0
+    of: Configuration,
+    speed: np.ndarray,
+    *,
+    num_runs: int,
+    seed: int | np.random.Generator = 0,
+    law: Callable[[Configuration, np.ndarray], np.ndarray] = friction,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mean torque over `num_runs` runs at each speed, N·m, and the sd of one run, shape of `speed`.
+    """Mean torque over `num_runs` runs at each speed, N·m, and the sd of one run, shape of `speed`. `law`: friction.
 
     Raises ParameterError for less than one run."""
     whole("num_runs", num_runs, 1)
     rng = generator(seed)
-    true = friction(of, speed)
+    true = law(of, speed)
     runs = true + noise_sd(true) * rng.normal(size=(num_runs, *np.shape(speed)))
     sd = runs.std(axis=0, ddof=1) if num_runs > 1 else noise_sd(true)
     return runs.mean(axis=0), sd
