@@ -81,6 +81,12 @@ def test_what_is_stated_counts_and_is_not_unknown() -> None:
     )
 
 
+def test_a_stated_start_counts_where_nothing_was_measured() -> None:
+    position, velocity = start(follows=(None,) * 3, motion={}, position={0: 0.9}, velocity={1: -1.0}).state(RIGID)
+    np.testing.assert_allclose(position, [0.9, 0.0, 0.0])
+    np.testing.assert_allclose(velocity, [0.0, -1.0, 0.0])
+
+
 def test_the_start_is_known_to_a_tenth_of_the_travel_and_to_its_speed() -> None:
     found = dict(zip(*start().nuisances(RIGID), strict=True))
     assert found == pytest.approx(

@@ -32,11 +32,10 @@ class Start:
         """Position and velocity, shape (..., dof), for rigid shapes (..., dof) as `_core.rigid_motion` gives them."""
         position, velocity = np.zeros((2, *shape.shape[:-1], len(self.follows)))
         for j, known in enumerate(self.follows):
-            if known is not None:
-                y, rate, _ = self.motion[known]
-                share = self._share(shape, j, known)
-                position[..., j] = self.position.get(j, share * y)
-                velocity[..., j] = self.velocity.get(j, share * rate)
+            y, rate, _ = (0.0, 0.0, 0.0) if known is None else self.motion[known]
+            share = 1.0 if known is None else self._share(shape, j, known)
+            position[..., j] = self.position.get(j, share * y)
+            velocity[..., j] = self.velocity.get(j, share * rate)
         return position, velocity
 
     def nuisances(self, shape: np.ndarray) -> tuple[tuple[tuple[str, int], ...], tuple[float, ...]]:
