@@ -68,4 +68,4 @@ def test_a_command_is_limited_and_a_disturbance_added_after_the_limit() -> None:
         return float(limited + push(TIME[min(int(t / 0.005 + 1e-9), 400)]))
 
     given = {"derivative_on": "measurement", "limit": 1.0, "disturbance": "push"}
-    np.testing.assert_allclose(closed({**WANTED, "push": push(TIME)}, **given), expected(command, rtol=1e-6), atol=1e-4)
+    np.testing.assert_allclose(closed({**WANTED, "push": push(TIME)}, **given), expected(command, rtol=1e-8), atol=1e-4)

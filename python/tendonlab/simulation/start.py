@@ -33,7 +33,7 @@ class Start:
         position, velocity = np.zeros((2, *shape.shape[:-1], len(self.follows)))
         for j, known in enumerate(self.follows):
             y, rate, _ = (0.0, 0.0, 0.0) if known is None else self.motion[known]
-            share = 1.0 if known is None else self._share(shape, j, known)
+            share = np.zeros(shape.shape[:-1]) if known is None else self._share(shape, j, known)
             position[..., j] = self.position.get(j, share * y)
             velocity[..., j] = self.velocity.get(j, share * rate)
         return position, velocity
