@@ -5,7 +5,7 @@ import pytest
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers import s2
-from tendonlab.procedures import lowpass
+from tendonlab.procedures import lowpass, remove_mean
 
 RIG = s2.constants()
 GEAR = {"alpha": RIG.alpha, "beta": RIG.beta}
@@ -208,3 +208,30 @@ def test_three_readings_of_a_misprinted_unit() -> None:
     assert a * top / RIG.k_m == pytest.approx(47.0, abs=0.5)
     assert b == pytest.approx(9.854e-5, rel=1e-4)
     assert c == pytest.approx(1.0319e-5, rel=1e-12)
+
+
+@pytest.mark.cpu(15)
+def test_the_bench_finds_the_slopes_of_the_bushings_and_loses_their_level() -> None:
+    """Fig. 11 by PID, 5 N sensors and a 1 Hz filter. Removing the mean of the force takes one number from both a of a
+    cable, the mean of its branches over the sweep: 5 and 16 N. Slopes, edges and a_1 - a_2 remain, and the intervals of
+    slopes and edges cover."""
+    slopes = ("b11", "b12", "b21", "b22", "c1", "c2")
+    covered, errors = [], []
+    for seed in range(12):
+        for cable, loop in s2.bushing_bench(RIG, seed=seed).items():
+            fit = s2.fit_bushing(loop["theta"], loop["velocity"], loop["force"], tension=RIG.T)
+            true = RIG.bushings[cable - 1]
+            covered += [abs(fit[name] - true[name]) <= fit.half_widths[name] for name in slopes]
+            errors.append([cable, fit["a1"] - true["a1"], fit["a2"] - true["a2"]])
+    assert 0.89 <= np.mean(covered) <= 0.99
+    by_cable = {cable: np.array([e[1:] for e in errors if e[0] == cable]) for cable in (1, 2)}
+    np.testing.assert_allclose(by_cable[1].mean(axis=0), 4.3, atol=0.3)
+    np.testing.assert_allclose(by_cable[2].mean(axis=0), 16.1, atol=0.3)
+    for shift in by_cable.values():
+        np.testing.assert_allclose(shift[:, 0], shift[:, 1], atol=0.6)
+
+
+def test_a_signal_without_its_mean() -> None:
+    np.testing.assert_allclose(remove_mean([1.0, 2.0, 6.0]), [-2.0, -1.0, 3.0])
+    with pytest.raises(ParameterError, match="values"):
+        remove_mean([1.0, np.nan])

@@ -103,3 +103,12 @@ def test_cables_that_are_softer_at_low_tension_are_told_from_everything(tmp_path
     assert not found.indistinguishable
     assert found.effects[0].parameters["toe_tension"]["value"] == pytest.approx(200.0, rel=0.02)
     assert found.shrinkage["from_refitted"]["value"] > 0.8
+
+
+@pytest.mark.slow
+def test_a_hold_is_found_in_the_whole_library(tmp_path: Path) -> None:
+    """One run made twice; no list of candidates is handed over."""
+    found = diagnose(s2.write_dataset(tmp_path, RIG, hold=True, repeated=True))
+    assert found.verdict == "effect"
+    assert list(found.selected) == ["stiction:hold"]
+    assert found.shrinkage["from_refitted"]["value"] > 0.8

@@ -5,7 +5,7 @@ Arrays in, arrays or frames out; SI units, time in s. Bad input raises Parameter
 from tendonlab.procedures.correlation import correlation_shift
 from tendonlab.procedures.denoise import universal_threshold, wavelet_denoise
 from tendonlab.procedures.differentiate import velocity
-from tendonlab.procedures.filtering import lowpass
+from tendonlab.procedures.filtering import lowpass, remove_mean
 from tendonlab.procedures.load_cells import LoadCell, pretension_from_load_cells, reactive_torque
 from tendonlab.procedures.maps import MapPoint, friction_map, map_point
 from tendonlab.procedures.markers import MarkerSpline, WrapAngle, sort_markers, wrap_angle_uncertainty
@@ -32,6 +32,7 @@ __all__ = [
     "map_point",
     "pretension_from_load_cells",
     "reactive_torque",
+    "remove_mean",
     "reversal_mask",
     "reversals",
     "sort_markers",

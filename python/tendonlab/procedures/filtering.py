@@ -1,4 +1,4 @@
-"""Low-pass filtering (S2)."""
+"""Low-pass filtering, and a signal less its mean (S2)."""
 
 from __future__ import annotations
 
@@ -35,6 +35,16 @@ def lowpass(
         raise ParameterError(
             f"cutoff = {cutoff}: expected a greater share of sample_rate = {sample_rate} Hz; rounding leaves no filter"
         ) from error
+
+
+def remove_mean(values: ArrayLike) -> np.ndarray:
+    """`values`, shape (n,), less their mean; same shape and unit.
+
+    Of a force over a sweep that takes off what does not change, such as a preload, but also the mean of what does: the
+    levels of the branches of a friction law are then known only up to one common number. S2 does so before its fit.
+    Raises ParameterError for numbers that are not finite."""
+    row = samples("values", values, fewest=1)
+    return np.asarray(row - row.mean())
 
 
 def _filtered(row: np.ndarray, cutoff: float, sample_rate: float, order: int, zero_phase: bool) -> np.ndarray:

@@ -22,7 +22,7 @@ from tendonlab.papers.s0.experiments import load_dataset, lugre_system, proposed
 from tendonlab.papers.s0.fits import Fit, fit_decay, fit_on_twin, fit_proposed, fit_static_lugre
 from tendonlab.papers.s0.maps import absolute_error, features, peak_errors, printed_peaks, twin_map
 from tendonlab.papers.s0.models import Decaying, Lugre, Proposed, printed_lugre, reconstructed
-from tendonlab.papers.s0.runs import point_of, schedule, simulate_run, torque_of
+from tendonlab.papers.s0.runs import bench_map, point_of, schedule, simulate_run, torque_of
 
 __all__ = [
     "LOADS",
@@ -35,6 +35,7 @@ __all__ = [
     "Reactions",
     "absolute_error",
     "bearing_coefficient",
+    "bench_map",
     "cable_pull",
     "capstan_reactions",
     "configuration",

@@ -54,7 +54,9 @@ def capstan_diagram(axes: tuple[Axes, Axes], of: Configuration, *, pretension: f
     """Fig. 9: the capstan's shaft likewise."""
     found = capstan_reactions(of, pretension=pretension)
     weights = [(of.capstan.gravity, -of.capstan.weight, "W", PUSH)]
-    _shaft(axes, of, of.capstan, found, weights, cable_pull(of, pretension), "Fig. 9  Capstan shaft")
+    _shaft(
+        axes, of, of.capstan, found, weights, cable_pull(of, pretension), "Fig. 9  Capstan shaft, arrows not to scale"
+    )
 
 
 def drive_scheme(ax: Axes) -> Axes:

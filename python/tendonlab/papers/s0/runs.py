@@ -11,8 +11,8 @@ from scipy.signal import lfilter
 
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s0 import twin
-from tendonlab.papers.s0.bench import SAMPLE_RATE, Configuration
-from tendonlab.procedures import LoadCell, MapPoint, map_point, reactive_torque
+from tendonlab.papers.s0.bench import NUM_RUNS, SAMPLE_RATE, Configuration
+from tendonlab.procedures import LoadCell, MapPoint, friction_map, map_point, reactive_torque
 from tendonlab.seed import generator
 
 LEVER = 0.06  # m, load cell to shaft axis: L of S0 eq. 6, whose value is not printed
@@ -85,6 +85,24 @@ def torque_of(run: pd.DataFrame, *, cells: tuple[LoadCell, LoadCell] = CELLS) ->
 def point_of(run: pd.DataFrame) -> MapPoint:
     """The map point of a run: speed and mean torque of its steady part."""
     return map_point(run.index.to_numpy(dtype=float), run["input_angle"].to_numpy(), torque_of(run))
+
+
+def bench_map(
+    of: Configuration,
+    speeds: np.ndarray,
+    *,
+    num_runs: int = NUM_RUNS,
+    travel: float = TRAVEL,
+    seed: int | np.random.Generator = 0,
+) -> pd.DataFrame:
+    """The friction map of a configuration by `num_runs` runs of the bench at each of `speeds`, rad/s of the input, both
+    signs: every run through its cells, its denoised angle and its steady part. Columns as `friction_map` has them.
+
+    Raises ParameterError as `trapezoid`."""
+    rng = generator(seed)
+    order = schedule(np.asarray(speeds, dtype=float), num_runs=num_runs, seed=rng)
+    runs = (simulate_run(of, speed=float(v), travel=travel, seed=rng) for v in order)
+    return friction_map([point_of(run) for run in runs])
 
 
 def _creep(time: np.ndarray, force: np.ndarray, cell: LoadCell) -> np.ndarray:

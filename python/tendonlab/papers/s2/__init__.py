@@ -5,7 +5,7 @@
 from tendonlab.papers.s2 import diagrams, equations, figures, graphs
 from tendonlab.papers.s2.energy import energy_drift, free_swing
 from tendonlab.papers.s2.estimate import Estimate
-from tendonlab.papers.s2.experiments import bushing_loop, cable_ramps, gear_points
+from tendonlab.papers.s2.experiments import bushing_bench, bushing_loop, cable_ramps, gear_points
 from tendonlab.papers.s2.forces import covariance_of, feedforward, force_band, force_shift, shifted
 from tendonlab.papers.s2.identify import (
     bushing_law,
@@ -27,6 +27,7 @@ __all__ = [
     "Constants",
     "Estimate",
     "Reference",
+    "bushing_bench",
     "bushing_law",
     "bushing_loop",
     "cable_ramps",

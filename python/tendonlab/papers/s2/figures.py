@@ -45,9 +45,9 @@ def draw_gear(ax: Axes, points: pd.DataFrame, fit: Estimate, printed: Constants)
 def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequence[Axes]:
     """Fig. 10: force of one cable, measured and estimated, and the residual, against time; on two axes."""
     estimated = fit["F_0"] + fit["K"] * ramps["elongation"] + fit["c"] * ramps["rate"]
-    axes[0].plot(ramps.index, ramps["force"], ".", ms=1.5, color=INK, label="measured (synthetic)")
+    axes[0].plot(ramps.index, ramps["force"], ".", ms=1.5, color=INK, rasterized=True, label="measured (synthetic)")
     axes[0].plot(ramps.index, estimated, color=BLUE, lw=1.0, label="estimated")
-    axes[1].plot(ramps.index, ramps["force"] - estimated, ".", ms=1.5, color=MUTED)
+    axes[1].plot(ramps.index, ramps["force"] - estimated, ".", ms=1.5, color=MUTED, rasterized=True)
     axes[0].set(ylabel="cable force (N)", title="Fig. 10  Stiffness and damping of the cable, 200 to 500 N")
     axes[1].set(xlabel="time (s)", ylabel="residual (N)")
     axes[0].legend(loc="lower right")
@@ -61,7 +61,7 @@ def draw_branches(
 ) -> Axes:
     """Fig. 11: force of a cable in its bushing against the joint angle: the loop, and the four branches of eq. 11."""
     part = loop.iloc[::every]
-    ax.plot(part["theta"], part["force"], ".", ms=2, color=MUTED, label="loop (synthetic)")
+    ax.plot(part["theta"], part["force"], ".", ms=2, color=MUTED, rasterized=True, label="loop (synthetic)")
     law = bushing_law(branches)
     for sense, colour, text in ((1.0, BLUE, "v > 0"), (-1.0, RED, "v < 0")):
         i = 1 if sense > 0 else 2

@@ -66,7 +66,7 @@ def loops(ax: Axes, records: Sequence[Record], labels: Sequence[str], *, p: Fric
     """Output over input torque, after the first quarter period; with `p` the two branches of S3 eq. 18 as lines."""
     for record, label, colour in zip(records, labels, COLOURS, strict=False):
         log = _settled(record)
-        ax.plot(log["tau_in"], log["tau_out"], ".", ms=2.0, color=colour, label=label)
+        ax.plot(log["tau_in"], log["tau_out"], ".", ms=2.0, color=colour, label=label, rasterized=True)
         if p is not None:
             law = TransmissionCoefficients.of(
                 record.shape, mu=p.mu_d, T_s=record.pretension, r_in=0.05, r_out=0.05
@@ -83,7 +83,7 @@ def friction_torque(ax: Axes, records: Sequence[Record], labels: Sequence[str]) 
     """Friction torque tau_in - tau_out over the velocity of motor A."""
     for record, label, colour in zip(records, labels, COLOURS, strict=False):
         log = _settled(record)
-        ax.plot(log["v"], log["tau_in"] - log["tau_out"], ".", ms=2.0, color=colour, label=label)
+        ax.plot(log["v"], log["tau_in"] - log["tau_out"], ".", ms=2.0, color=colour, label=label, rasterized=True)
     ax.set(xlabel="velocity of motor A (deg/s)", ylabel=r"$\tau_{in}-\tau_{out}$ (N·m)")
     ax.legend(fontsize=8, markerscale=4, frameon=False)
     tidy(ax, grid="both")
@@ -102,7 +102,7 @@ def in_time(ax: Axes, record: Record, *, label: str = r"$\tau_{out}$", colour: s
     """Input and output torque over time."""
     ax.plot(record.log.index, record.log["tau_in"], color=MUTED, lw=1.0, label=r"$\tau_{in}$")
     shown = record.log.iloc[::SHOWN]
-    ax.plot(shown.index, shown["tau_out"], ".", ms=2.0, color=colour, label=label)
+    ax.plot(shown.index, shown["tau_out"], ".", ms=2.0, color=colour, label=label, rasterized=True)
     ax.set(xlabel="time (s)", ylabel="torque (N·m)")
     ax.margins(x=0.01, y=0.2)
     tidy(ax)
@@ -112,7 +112,7 @@ def compared(ax: Axes, record: Record, prediction: Prediction, *, title: str) ->
     """Measured and predicted output over time."""
     time, measured = record.log.index.to_numpy(), record.log["tau_out"].to_numpy()
     ax.plot(time, record.log["tau_in"], color="#b8c0c8", lw=1.0, label=r"$\tau_{in}$")
-    ax.plot(time[::SHOWN], measured[::SHOWN], ".", ms=2.0, color=INK, label=r"$\tau_{out}$, twin")
+    ax.plot(time[::SHOWN], measured[::SHOWN], ".", ms=2.0, color=INK, rasterized=True, label=r"$\tau_{out}$, twin")
     ax.plot(time, prediction.tau_out, color=MODEL, lw=1.2, label=r"$\tau_{out}$, model")
     ax.set(xlabel="time (s)", ylabel="torque (N·m)", title=title)
     ax.margins(x=0.01, y=0.2)

@@ -156,7 +156,7 @@ def draw_friction(ax: Axes, run: pd.DataFrame, *, without: pd.DataFrame | None =
 
 def draw_fit(ax: Axes, read: pd.DataFrame, simulated: pd.DataFrame, *, name: str = "T22") -> Axes:
     """Fig. 12, 14b: a measured tension and the simulated one."""
-    ax.plot(read.index, read[name], ".", color=INK, ms=1.2, alpha=0.5, label="measured (twin)")
+    ax.plot(read.index, read[name], ".", color=INK, ms=1.2, alpha=0.5, rasterized=True, label="measured (twin)")
     ax.plot(simulated.index, simulated[name], color=ORANGE, lw=1.2, label="simulated")
     low, high = float(read[name].min()), float(read[name].max())
     ax.set(xlabel="time (s)", ylabel=f"$T_{{{name[1:]}}}$ (N)", ylim=(low - 2, high + 0.2 * (high - low)))
@@ -166,8 +166,8 @@ def draw_fit(ax: Axes, read: pd.DataFrame, simulated: pd.DataFrame, *, name: str
 
 def draw_coefficient(ax: Axes, time: np.ndarray, mu: np.ndarray, kept: np.ndarray) -> Axes:
     """Fig. 14a: friction coefficient sample by sample; what counts in colour, reversals left out in grey."""
-    ax.plot(time, mu, ".", color=MUTED, ms=1.2, label="all samples: spikes at reversals")
-    ax.plot(time[kept], mu[kept], ".", color=BLUE, ms=1.5, label="away from reversals")
+    ax.plot(time, mu, ".", color=MUTED, ms=1.2, rasterized=True, label="all samples: spikes at reversals")
+    ax.plot(time[kept], mu[kept], ".", color=BLUE, ms=1.5, rasterized=True, label="away from reversals")
     ax.set(xlabel="time (s)", ylabel=r"$\mu_{c,21}$ (1)", ylim=(0.0, 0.3))
     ax.legend(loc="upper right", markerscale=6)
     return ax
