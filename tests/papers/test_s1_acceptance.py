@@ -8,6 +8,7 @@ import pytest
 
 import tendonlab as tl
 from diagnoses import diagnose
+from tendonlab.errors import ParameterError
 from tendonlab.mechanics.tendons import Propagation, TendonTransmission
 from tendonlab.papers import s1
 from tendonlab.papers.s1.experiments import NOISY_SPEEDS
@@ -205,3 +206,27 @@ def test_the_papers_own_gap_is_diagnosed(tmp_path: Path) -> None:
     found = next(e for e in why.effects if e.name == "cable:load_dependence")
     value = found.parameters["load_dependence"]["value"]
     assert 0.01 < value < 0.02  # the twin's lie between 0.01 and 0.02, by link
+
+
+def test_withheld_reducers_are_found(tmp_path: Path) -> None:
+    """The simulator's reducers lose nothing; those of the twin have an efficiency of 0.9."""
+    why = diagnose(tl.load(s1.write_dataset(tmp_path, withheld="reducer")))
+    assert why.verdict == "effect"
+    assert why.selected == ("gear:efficiency",)
+    assert why.shrinkage["from_refitted"]["value"] > 0.8
+
+
+def test_wrong_radii_are_parameters_and_no_effect(tmp_path: Path) -> None:
+    """Two driven pulleys count as 2 % larger than they are."""
+    rig = tl.load(s1.write_dataset(tmp_path, withheld="radius"))
+    why = diagnose(rig)
+    assert why.verdict == "parameters_only"
+    assert why.selected == ()
+    for name in ("radius_2_2", "radius_3_3"):
+        found = why.details["parameters"][name]
+        assert found["value"] == pytest.approx(s1.example_device().parameters()[name], rel=4e-3)
+
+
+def test_an_unknown_thing_to_withhold_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="withheld = 'gravity'"):
+        s1.write_dataset(tmp_path, withheld="gravity")

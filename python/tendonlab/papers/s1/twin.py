@@ -1,5 +1,6 @@
 """A twin of the device that shares no law with the library: the recursion of S1 fig. 4 in closed form, with all losses.
-It makes the logs on which the paper's missing effect, the loss in proportion to tension, is withheld and diagnosed."""
+It makes the logs on which a loss is withheld and diagnosed: that in proportion to tension, which the paper leaves out,
+or that of the reducers; or on which the simulator believes wrong radii."""
 
 from __future__ import annotations
 
@@ -10,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tendonlab.arguments import positive, samples
+from tendonlab.arguments import choice, positive, samples
+from tendonlab.data import NominalParameter
 from tendonlab.mechanics.tendons import TendonTransmission
 from tendonlab.papers.s1.device import GRAVITY, LOAD_LEVELS, example_device
 from tendonlab.papers.s1.identification import decompose, identify_joint, shares_by_bearings
@@ -19,6 +21,8 @@ from tendonlab.seed import generator
 NOISE = 5e-3  # N·m, of a motor torque [reconstructed]
 RUN_TO_RUN = 0.005  # relative sd of all losses from run to run [reconstructed]
 SAMPLE_TIME, DURATION = 0.04, 10.0  # s
+WITHHELD = ("tension", "reducer", "radius")
+DRIVEN_RADII = tuple(f"radius_{i}_{i}" for i in range(1, 5))
 
 
 def inverse_statics(
@@ -124,8 +128,31 @@ def nominal_device() -> TendonTransmission:
     return replace(device, losses=losses)
 
 
-def write_dataset(folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, seed: int = 0) -> Path:
-    """Write the twin's logs at `levels` of gravity, and the nominal simulator without the tension-proportional loss, as
+def believed(withheld: str) -> dict[str, NominalParameter]:
+    """What the simulator knows: "tension", friction as the paper identifies it, without loss in proportion to tension;
+    "reducer", all losses of the branches, and reducers that lose nothing; "radius", everything, but the driven pulleys
+    of joints 2 and 3 count as 2 % larger than they are, and all driven pulleys are known to 2 %.
+
+    Raises ParameterError for another word."""
+    choice("withheld", withheld, WITHHELD)
+    own = (nominal_device() if withheld == "tension" else example_device()).parameters()
+    known = {}
+    for name, value in own.items():
+        uncertain = value > 0 and name.startswith(("constant_loss", "viscous_loss"))
+        sd = 0.3 * value if uncertain else 0.0
+        if withheld == "reducer" and name.startswith("reducer_efficiency"):
+            value = 1.0
+        if withheld == "radius" and name in DRIVEN_RADII:
+            sd = 0.02 * value
+            value *= 1.02 if name in DRIVEN_RADII[1:3] else 1.0
+        known[name] = NominalParameter(value, sd=sd)
+    return known
+
+
+def write_dataset(
+    folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, seed: int = 0, withheld: str = "tension"
+) -> Path:
+    """Write the twin's logs at `levels` of gravity and the simulator that lacks what is `withheld` (`believed`), as
     a dataset folder."""
     for k, level in enumerate(samples("levels", levels)):
         positive(f"levels[{k}]", level)
@@ -139,9 +166,7 @@ def write_dataset(folder: str | Path, *, levels: Sequence[float] = LOAD_LEVELS, 
         'kind = "tendon_routing"',
         "[system.parameters]",
     ]
-    for name, value in nominal_device().parameters().items():
-        uncertain = value > 0 and name.startswith(("constant_loss", "viscous_loss"))
-        lines.append(f"{name} = {{ value = {value!r}, sd = {0.3 * value if uncertain else 0.0!r} }}")
+    lines += [f"{name} = {{ value = {p.value!r}, sd = {p.sd!r} }}" for name, p in believed(withheld).items()]
     lines.append("[signals]")
     for name, unit in (("motor_velocity", "rad/s"), ("external_torque", "N*m"), ("motor_torque", "N*m")):
         lines += [f'{name}_{i} = {{ column = "{name}_{i}", unit = "{unit}" }}' for i in range(1, 5)]
