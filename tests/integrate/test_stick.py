@@ -116,3 +116,13 @@ def test_a_held_kick_releases_and_stops_again():
     expected = np.maximum(up - np.clip(t - 0.3, 0.0, None), 0.0)
     assert done["joint_velocity"] == pytest.approx(expected, abs=1e-12)
     assert np.all(done["joint_velocity"][t > 0.36] == 0.0)
+
+
+def test_a_short_push_moves_a_block_that_has_rested_for_long():
+    """While everything rests, steps grow; yet none may pass over a smooth push that is gone at its end."""
+    time = np.linspace(0.0, 10.0, 1001)
+    push = 2.0 * np.exp(-(((time - 7.0) / 0.03) ** 2))
+    found = run(joint(("joint:coulomb",), coulomb=1.0), time, push)
+    force = np.maximum(2.0 * np.exp(-((np.linspace(-0.2, 0.2, 40001) / 0.03) ** 2)) - 1.0, 0.0)
+    assert found["joint_angle"][600] == 0.0
+    assert found["joint_angle"][-1] > 0.5 * np.trapezoid(force, dx=1e-5) ** 2 / 2.0  # work against friction: v^2 / 2 mu

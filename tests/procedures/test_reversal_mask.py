@@ -62,7 +62,8 @@ def test_a_dwell_between_motions_of_one_sense_is_no_reversal_whatever_its_noise(
 @given(data=st.data())
 def test_the_mask_is_what_its_words_say(data: st.DataObject) -> None:
     """On any velocity: nothing slow is kept, nothing near a reversal, and all else is."""
-    values = data.draw(st.lists(st.floats(-1.0, 1.0), min_size=5, max_size=40).filter(lambda v: max(map(abs, v)) > 0.1))
+    speed = st.floats(-1.0, 1.0).filter(lambda v: v == 0.0 or abs(v) > 1e-6)  # else rounding moves zeros onto samples
+    values = data.draw(st.lists(speed, min_size=5, max_size=40).filter(lambda v: max(map(abs, v)) > 0.1))
     velocity, time = np.array(values), np.arange(len(values)) * 0.1
     keep = reversal_mask(time, velocity, share=0.3, around=0.15, rest=0.0)
     times = reversals(time, velocity, rest=0.0)

@@ -101,6 +101,18 @@ class Drive {
     if (!echoes.empty()) next = std::min(next, echoes.front());
     return next > now ? next : std::nextafter(now, Signal::inf_time);
   }
+  /// The next instant after `now` at which a smooth input may turn: its next knot.
+  double next_knot(double now) const {
+    double next = Signal::inf_time;
+    const auto look = [&](const Signal& s, int near, double by) {
+      if (!s.holds && !s.empty()) next = std::min(next, s.next_knot(now - by, near) + by);
+    };
+    if (logged()) look(from.inputs[0], piece[0], shift);
+    for (std::size_t k = 1; k < from.inputs.size(); ++k) look(from.inputs[k], piece[k], 0.0);
+    look(from.loop.disturbance, disturbance_piece, shift);
+    if (from.loop.kind != Loop::Kind::open) look(from.loop.reference, reference_piece, shift);
+    return next;
+  }
   /// Moves the held inputs that no delay touches to the piece that begins at `now`, which the stepper has landed on.
   void pass_known(double now) {
     for (std::size_t k = 1; k < from.inputs.size(); ++k) move(from.inputs[k], piece[k], 0.0, now);

@@ -63,6 +63,18 @@ struct Signal {
   double next_change(int i) const {
     return holds && i + 1 < pieces() ? knots[static_cast<std::size_t>(i) + 1] : inf_time;
   }
+  /// The first knot after `time`, looked for from piece `near`, where the signal may turn; infinity if there is none.
+  double next_knot(double time, int near) const {
+    auto i = static_cast<std::size_t>(locate(time, near));
+    while (i < knots.size() && (knots[i] <= time || rests(i))) ++i;
+    return i < knots.size() ? knots[i] : inf_time;
+  }
+  /// Does the signal keep its value through knot i?
+  bool rests(std::size_t i) const {
+    const auto constant = [](const auto& c) { return c[1] == 0.0 && c[2] == 0.0 && c[3] == 0.0; };
+    return i > 0 && constant(coefficients[i]) && constant(coefficients[i - 1]) &&
+           coefficients[i][0] == coefficients[i - 1][0];
+  }
   /// Joins held pieces of equal value, so that the stepper lands where something happens and nowhere else.
   void join() {
     if (!holds || empty()) return;

@@ -43,6 +43,8 @@ class Simulation {
                                       " s: a parameter may be far too stiff, or the tolerance too small"));
       const double reach = std::min(kink, end) - t;
       double length = std::min(h, drive.longest_step());
+      // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
+      if (plain_frame.holds) length = std::min(length, drive.next_knot(t + resolved()) - t);
       const bool lands = length > (retakes ? reach : 0.95 * reach);
       if (lands) length = reach;
       const bool explicitly = length < h && length <= explicit_reach;  // h reaches beyond what the inputs allow
@@ -60,8 +62,7 @@ class Simulation {
       if (first.stale || (first.mode >= 0 && first.share < 0.97)) {  // dense output is less accurate inside a step
         ++trajectory.rejected;
         retakes = true;
-        const double resolved = 1e-13 * (1.0 + std::fabs(t));
-        const bool now = first.stale ? length < 1e4 * resolved : first.share * length < resolved;
+        const bool now = first.stale ? length < 1e4 * resolved() : first.share * length < resolved();
         if (now && first.stale && first.mode < System::directions)
           choose_again(first);
         else if (now)
@@ -99,6 +100,9 @@ class Simulation {
   };
   static constexpr double on_guard = 1e-13;
   static constexpr double RETRY = 1.1;  ///< growth of the reach of explicit steps while none is taken
+
+  /// The shortest time that counts.
+  double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
 
   void start() {
     y.at.time = T(t);

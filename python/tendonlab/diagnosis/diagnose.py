@@ -17,6 +17,7 @@ from tendonlab.diagnosis.search.select import select_effects
 from tendonlab.diagnosis.search.workshop import open_workshop
 from tendonlab.errors import ParameterError
 from tendonlab.fitting.case import make_case
+from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
 from tendonlab.simulation.system import System
@@ -38,7 +39,7 @@ def diagnose(
     """Say where the gap between `system` (the dataset's own simulator unless given) and the logs lies, which unmodelled
     effect causes it, and how far the gap shrinks on held-out experiments once it is added.
     The logs are checked first, as `tendonlab.check` does: a wrong sign, scale or clock ends it with the verdict
-    "data_fault", unless `force`. Outliers are left out.
+    "data_fault", unless `force`. Outliers are left out; logs far above the bandwidth of the motion are thinned.
 
     `library`: "default", every effect that the system takes, or names as "joint:stribeck"; a law that is the whole
     friction of its element is swapped in only where it is named. `seed`: the bootstrap's.
@@ -53,6 +54,7 @@ def diagnose(
         return data_fault(dataset, used, found, seed=seed, seconds=time.monotonic() - began)
     if any(finding.problem == "outliers" for finding in found.findings):
         dataset = without_outliers(dataset)
+    dataset = thinned(dataset, system)
     with open_workshop(names, progress=progress) as shop:
         case = make_case(dataset, system)
         rough = rough_fit(case, shop.cancel)

@@ -13,10 +13,13 @@ from tendonlab.arguments import within
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.records import Experiment
-from tendonlab.simulation.signals import hold, linear, scales_of, smooth, smoothed
+from tendonlab.simulation.signals import averaged, hold, linear, scales_of, smooth, smoothed
 from tendonlab.simulation.start import Start, start_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tendonlab.simulation.catalog import InputInfo
     from tendonlab.simulation.records import Controller
 MAX_ATTEMPTS, ATTEMPTS_PER_SAMPLE = 1_000_000, 1_000  # of the stepper: beyond them a parameter is far too stiff
 REPLAYS = ("auto", "controller", "free")  # of `System.simulate`; an injection needs the gains of a dataset
@@ -145,7 +148,9 @@ def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_
         if given.name in data.columns:
             values = _finite(experiment, given.name)
             held = experiment.holds.get(given.name, given.between == "hold")
-            between = hold if held else smoothed if given.between == "smooth" else linear
+            between = (
+                averaged if experiment.averaged else hold if held else smoothed if given.between == "smooth" else linear
+            )
             signals.append(between(time, values))
         elif given.required and given.replaced_by not in data.columns and not (k == 0 and replay.kind == "controller"):
             raise DatasetError(
@@ -154,6 +159,15 @@ def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_
         else:
             signals.append(_core.Signal())
     return signals
+
+
+def _between(experiment: Experiment, given: InputInfo) -> Callable[[np.ndarray, np.ndarray], _core.Signal]:
+    """How an input goes from sample to sample."""
+    if experiment.averaged:
+        return averaged
+    if experiment.holds.get(given.name, given.between == "hold"):
+        return hold
+    return smoothed if given.between == "smooth" else linear
 
 
 def _require_time(experiment: Experiment) -> None:

@@ -62,7 +62,8 @@ class Experiment(EqualByFields):
 
     `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
     known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats;
-    `holds`: whether a signal is held between its samples."""
+    `holds`: whether a signal is held between its samples; `averaged`: whether each sample of an input is its mean until
+    the next one."""
 
     name: str
     data: pd.DataFrame = field(repr=False)
@@ -73,6 +74,7 @@ class Experiment(EqualByFields):
     add: dict[str, float] = field(default_factory=dict)
     initial: dict[str, float] = field(default_factory=dict)
     holds: dict[str, bool] = field(default_factory=dict, repr=False)
+    averaged: bool = field(default=False, repr=False)
 
     @property
     def time(self) -> np.ndarray:

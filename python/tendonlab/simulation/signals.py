@@ -22,6 +22,14 @@ def linear(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     return _core.Signal(time[:-1], np.column_stack([values[:-1], slope, np.zeros((len(slope), 2))]), False)
 
 
+def averaged(time: np.ndarray, means: np.ndarray) -> _core.Signal:
+    """Parabolas without kinks or jumps, each with the given mean until the next sample; the last sample ends them."""
+    from scipy.interpolate import CubicSpline
+
+    gathered = np.concatenate([[0.0], np.cumsum(means[:-1] * np.diff(time))])
+    return _from_pieces(CubicSpline(time, gathered, bc_type="natural").derivative())
+
+
 def smooth(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """A cubic spline through the samples: for what is differentiated."""
     from scipy.interpolate import CubicSpline

@@ -1,0 +1,148 @@
+"""Fewer samples that say the same: logs taken far above the bandwidth of the motion, thinned before they are fitted.
+
+Outputs become local parabolas' values: motion stays, white noise falls. Inputs become means over the samples left out,
+so that every impulse stays what it was."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from tendonlab.data import Dataset
+from tendonlab.fitting.noise import noise_of
+from tendonlab.simulation.records import Experiment
+from tendonlab.simulation.system import System
+
+RATE = 100.0  # Hz: logs are thinned to no less
+LOST = 1.15  # residual of the parabolas over the sensors' noise: more, and they would smooth motion away
+SHAKES = 0.2  # rms of an input's noise over that of the input: more shakes a rig, which eases its friction
+THINNED = (
+    "The logs were thinned from {:.0f} to {:.0f} samples per second; errors and noise floors are those of the smoothed "
+    "signals."
+)
+GAP = 5.0  # usual steps between two samples: where more is missing, a log is not thinned
+
+
+@dataclass(frozen=True)
+class Thinned:
+    """A column after thinning: `values`, by how much its white noise fell (`gain`, rms), and what was smoothed away."""
+
+    values: np.ndarray
+    gain: float
+    removed: np.ndarray
+
+
+def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
+    """The dataset with as few samples as hold what the logs say, at least `RATE` a second. As it is where a controller
+    ticks, where a log has gaps, or where any smoothing would take motion away. `system`: default the dataset's own."""
+    system = dataset.system() if system is None else system
+    steps = [float(np.median(np.diff(e.time))) for e in dataset if len(e.time) > 1]
+    if dataset.controller is not None or not steps or any(_has_gaps(e.time) for e in dataset):
+        return dataset
+    outputs = [s.name for s in system.info.outputs if s.name in dataset.signals]
+    records = {name: [(e.time, _column(e, name)) for e in dataset if name in e.data.columns] for name in outputs}
+    noise = {name: noise_of(dataset.signals[name], [row for _, row in of]) for name, of in records.items() if of}
+    factor = int(1.0 / (RATE * max(steps)) + 1e-6)
+    while factor > 1:
+        smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
+        calm = all(_is_calm(e, name, factor) for e in dataset for name in _inputs_of(e, system))
+        if calm and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
+            signals = {
+                name: replace(dataset.signals[name], noise_sd=noise[name] * _gain(smooth[name]), resolution=None)
+                for name in noise
+            }
+            few = tuple(_thin(e, system, list(noise), factor) for e in dataset)
+            said = (*dataset.warnings, THINNED.format(1.0 / max(steps), 1.0 / (max(steps) * factor)))
+            return replace(dataset, signals={**dataset.signals, **signals}, experiments=few, warnings=said)
+        factor //= 2
+    return dataset
+
+
+def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinned:
+    """Every `factor`-th value, from a parabola fitted to the samples up to the next ones on both sides. NaN where fewer
+    than a third of those were measured."""
+    rows, times = _windows(values, factor), _windows(time, factor)
+    enough = 4 * np.isfinite(rows).sum(axis=1) > 3 * factor
+    rows, times = rows[enough], times[enough]
+    there = np.isfinite(rows)
+    place = np.where(there, times - time[::factor][enough, None], 0.0) / (time[-1] - time[0])
+    place *= (len(time) - 1) / factor
+    powers = there[:, :, None] * place[:, :, None] ** np.arange(3)
+    inverse = np.linalg.inv(np.einsum("nwi,nwj->nij", powers, powers))
+    fitted = np.einsum("nij,nwj,nw->ni", inverse, powers, np.where(there, rows, 0.0), optimize=True)
+    out = np.full(len(enough), np.nan)
+    out[enough] = fitted[:, 0]
+    near = np.abs(np.arange(-factor, factor + 1)) <= factor // 2
+    rest = (rows - np.einsum("nwi,ni->nw", powers, fitted))[:, near]
+    gain = float(np.sqrt(np.mean(inverse[:, 0, 0]))) if enough.any() else 1.0
+    return Thinned(out, gain, rest[np.isfinite(rest)])
+
+
+def _windows(row: np.ndarray, factor: int) -> np.ndarray:
+    padded = np.pad(np.asarray(row, dtype=float), factor, constant_values=np.nan)
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * factor + 1)[::factor]
+
+
+def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:
+    removed = np.concatenate([of.removed for of in smooth])
+    return bool(len(removed)) and float(np.sqrt(np.mean(np.square(removed)))) < LOST * noise
+
+
+def _is_calm(experiment: Experiment, name: str, factor: int) -> bool:
+    """Whether next to nothing of an input is lost between its means."""
+    values = _column(experiment, name)
+    means = np.interp(experiment.time, *_middles(experiment.time[::factor], _means(experiment, name, factor)))
+    return float(np.sqrt(np.mean(np.square(values - means)))) <= SHAKES * float(np.sqrt(np.mean(np.square(values))))
+
+
+def _middles(time: np.ndarray, means: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Instants at which an input has its means, and these."""
+    return 0.5 * (time[1:] + time[:-1]), means[:-1]
+
+
+def _gain(smooth: Sequence[Thinned]) -> float:
+    return float(np.sqrt(np.mean([of.gain**2 for of in smooth])))
+
+
+def _thin(experiment: Experiment, system: System, outputs: Sequence[str], factor: int) -> Experiment:
+    """The experiment at every `factor`-th sample."""
+    time = experiment.time[::factor]
+    inputs = _inputs_of(experiment, system)
+    columns = {}
+    for name in experiment.data.columns:
+        if name in outputs:
+            columns[name] = local_parabolas(experiment.time, _column(experiment, name), factor).values
+        elif name in inputs:
+            columns[name] = _means(experiment, name, factor)
+        else:
+            columns[name] = _column(experiment, name)[::factor]
+    data = pd.DataFrame(columns, index=pd.Index(time, name=experiment.data.index.name))
+    return replace(experiment, data=data, holds={**experiment.holds, **dict.fromkeys(inputs, True)}, averaged=True)
+
+
+def _inputs_of(experiment: Experiment, system: System) -> list[str]:
+    return [s.name for s in system.info.inputs if s.name in experiment.data.columns]
+
+
+def _means(experiment: Experiment, name: str, factor: int) -> np.ndarray:
+    """Mean of an input from each sample that is kept to the next; it goes straight between samples unless held."""
+    time, values = experiment.time, _column(experiment, name)
+    held = experiment.holds.get(name, True)
+    over = values[:-1] if held else 0.5 * (values[1:] + values[:-1])
+    gathered = np.concatenate([[0.0], np.cumsum(over * np.diff(time))])
+    kept = np.append(np.arange(0, len(time), factor), len(time) - 1)
+    length = np.diff(time[kept])
+    rise = np.diff(gathered[kept])
+    return np.where(length > 0, rise / np.where(length > 0, length, 1.0), values[kept[:-1]])
+
+
+def _has_gaps(time: np.ndarray) -> bool:
+    steps = np.diff(time)
+    return bool(np.any(steps > GAP * np.median(steps)))
+
+
+def _column(experiment: Experiment, name: str) -> np.ndarray:
+    return experiment.data[name].to_numpy(dtype=float)

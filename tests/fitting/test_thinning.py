@@ -1,0 +1,139 @@
+"""Thinning keeps motion and impulses, lowers white noise by what it says, and leaves alone what it would spoil."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import tendonlab as tl
+from tendonlab.fitting.thinning import local_parabolas, thinned
+from tendonlab.simulation.records import Experiment
+from tendonlab.simulation.signals import white_noise_sd
+
+RNG = np.random.default_rng(5)
+TIME = np.arange(4001) / 1000.0
+NOISE = 1e-4
+MASS = tl.System(
+    kind="rigid_joint",
+    parameters={"inertia": 0.01, "gravity_torque": 0.0, "torque_constant": 1.0, "coulomb": 0.02},
+    effects=("joint:coulomb",),
+)
+
+
+@pytest.fixture(scope="module")
+def torque():
+    return 0.1 * np.sin(2 * np.pi * 1.3 * TIME) + 0.004 * RNG.normal(size=len(TIME))
+
+
+@pytest.fixture(scope="module")
+def rig(torque, tmp_path_factory):
+    """A joint driven by a torque that is held from sample to sample, logged at 1 kHz."""
+    held = Experiment(name="run", data=pd.DataFrame({"motor_torque": torque}, index=pd.Index(TIME, name="t")))
+    angle = MASS.simulate(held)["joint_angle"].to_numpy() + NOISE * RNG.normal(size=len(TIME))
+    folder = tmp_path_factory.mktemp("rig")
+    table = pd.DataFrame({"t": TIME, "u": torque, "q": angle})
+    table.to_csv(folder / "run.csv", index=False)
+    (folder / "dataset.toml").write_text(
+        'format = "tendonlab-dataset/1"\nname = "joint"\ntime = { column = "t", unit = "s" }\n'
+        '[system]\nkind = "rigid_joint"\n[system.parameters]\ninertia = { value = 0.01, sd = 0.001 }\n'
+        "gravity_torque = { value = 0.0, sd = 0 }\ntorque_constant = { value = 1.0, sd = 0 }\n"
+        "coulomb = { value = 0.02 }\n"
+        '[signals]\nmotor_torque = { column = "u", unit = "N*m" }\njoint_angle = { column = "q", unit = "rad" }\n'
+        '[[experiments]]\nname = "run"\nfile = "run.csv"\nsplit = "train"\n'
+    )
+    return tl.load(folder)
+
+
+def thin(rig, **changes):
+    """The only experiment of the rig, thinned, with columns or fields changed before."""
+    (experiment,) = rig.experiments
+    columns = {k: v for k, v in changes.items() if k in experiment.data.columns}
+    experiment = replace(experiment, data=experiment.data.assign(**columns))
+    few = thinned(replace(rig, experiments=(experiment,)))
+    return few, few.experiments[0]
+
+
+def test_parabolas_are_kept_exactly_at_the_ends_and_where_samples_miss():
+    values = 0.3 - 2.0 * TIME + 0.7 * TIME**2
+    values[[3, 900, 901, 1500]] = np.nan
+    found = local_parabolas(TIME, values, 10)
+    assert found.values == pytest.approx((0.3 - 2.0 * TIME + 0.7 * TIME**2)[::10], abs=1e-12)
+    assert np.abs(found.removed).max() < 1e-12
+
+
+def test_white_noise_falls_by_the_gain():
+    noise = RNG.normal(size=200_001)
+    found = local_parabolas(np.arange(200_001) / 1000.0, noise, 10)
+    assert found.gain == pytest.approx(np.sqrt(9 / 4 / 21), rel=0.02)  # of a parabola's middle over 21 samples
+    assert np.std(found.values) == pytest.approx(found.gain, rel=0.02)
+
+
+def test_what_is_hardly_measured_is_missing():
+    values = np.sin(TIME)
+    values[992:1010] = np.nan
+    found = local_parabolas(TIME, values, 10).values
+    assert np.isnan(found[100])
+    assert np.isfinite(np.delete(found, 100)).all()
+
+
+def test_a_log_of_1_khz_becomes_one_of_100_hz_with_the_same_impulses(rig, torque):
+    few, after = thin(rig)
+    assert len(after.time) == 401
+    assert "thinned from 1000 to 100 samples per second" in few.warnings[-1]
+    assert few.signals["joint_angle"].noise_sd == pytest.approx(NOISE * np.sqrt(9 / 4 / 21), rel=0.1)
+    impulse = np.concatenate([[0.0], np.cumsum(torque[:-1]) * 1e-3])[::10]
+    means = after.data["motor_torque"].to_numpy()
+    assert np.cumsum(means[:-1]) * 1e-2 == pytest.approx(impulse[1:], abs=1e-12)
+
+
+def test_the_simulator_moves_alike_before_and_after(rig):
+    computed = 0.1 * np.sin(2 * np.pi * 1.3 * TIME)
+    before = replace(rig["run"], data=rig["run"].data.assign(motor_torque=computed))
+    _, after = thin(rig, motor_torque=computed)
+    start = {"joint_angle": 0.0, "joint_velocity": 0.1}
+    moved = [MASS.simulate(replace(of, initial=start))["joint_angle"].to_numpy() for of in (before, after)]
+    assert np.abs(moved[1] - moved[0][::10]).max() < 0.1 * NOISE
+
+
+def test_identify_finds_the_same_parameter_from_few_samples(rig):
+    few, _ = thin(rig)
+    full, found = (tl.identify(of, progress=False).parameters.loc["coulomb"] for of in (rig, few))
+    assert abs(found["value"] - full["value"]) < full["sd"]
+    assert 0.9 * full["sd"] < found["sd"] < 1.3 * full["sd"]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"joint_angle": lambda of: of["joint_angle"] + 5 * NOISE * np.sin(2 * np.pi * 180.0 * of.index)},
+        {"joint_angle": lambda of: of["joint_angle"] + np.where(of.index > 2.0, 0.02, 0.0)},
+    ],
+    ids=["vibration", "jump"],
+)
+def test_motion_that_would_be_smoothed_away_is_kept(rig, change):
+    (experiment,) = rig.experiments
+    values = change["joint_angle"](experiment.data)
+    noisy = replace(rig, signals={**rig.signals, "joint_angle": replace(rig.signals["joint_angle"], noise_sd=NOISE)})
+    _, after = thin(noisy, joint_angle=values)
+    assert len(after.time) == len(TIME)
+
+
+def test_a_torque_that_shakes_the_joint_is_kept(rig, torque):
+    """What is left out of a torque may be noise, not a dither as large as the friction that it frees."""
+    _, after = thin(rig, motor_torque=torque + 0.05 * np.sign(np.sin(2 * np.pi * 200.0 * TIME)))
+    assert len(after.time) == len(TIME)
+
+
+def test_a_log_with_a_gap_or_of_100_hz_stays_as_it_is(rig):
+    (experiment,) = rig.experiments
+    gap = replace(experiment, data=experiment.data.drop(experiment.data.index[1000:1020]))
+    slow = replace(experiment, data=experiment.data.iloc[::10])
+    for given in (gap, slow):
+        dataset = replace(rig, experiments=(given,))
+        assert thinned(dataset) is dataset
+
+
+def test_noise_is_measured_in_the_log_unless_stated(rig):
+    angle = rig["run"].data["joint_angle"].to_numpy()
+    assert white_noise_sd(angle) == pytest.approx(NOISE, rel=0.1)
