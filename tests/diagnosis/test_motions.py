@@ -67,3 +67,10 @@ def test_triangles_have_the_speed_and_sweeps_the_limits_that_were_seen() -> None
     first, last = np.diff(turns[:2])[0] / RATE, np.diff(turns[-2:])[0] / RATE
     assert 0.5 / last == pytest.approx(3.0, rel=0.15)  # Hz, from half a period
     assert 0.5 / first < 1.0
+
+
+def test_reversals_begin_upwards_from_the_middle() -> None:
+    reach = Reach(middle=1.0, travel=0.8, speed=1.2, acceleration=40.0, unit="rad")
+    path = _reversals(reach, "joint", "reversals", 0.5, 0.5).path
+    assert path[0] == pytest.approx(1.0, abs=0.05)
+    assert path[int(0.2 * RATE)] > path[0]

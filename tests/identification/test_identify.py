@@ -151,6 +151,8 @@ def test_the_profile_is_a_parabola_where_the_model_is_right(fit: Any) -> None:
     x = np.array([free.coordinate(v) for v in profile["value"]]) - free.coordinate(fit.values["inertia"])
     assert free.name == "inertia"
     np.testing.assert_allclose(profile["cost"], 0.5 * information * x**2, rtol=0.1, atol=0.02)
+    sd = fit.parameters["sd"]["inertia"] / free.slope(free.coordinate(fit.values["inertia"]))
+    np.testing.assert_allclose(x, sd * np.array([-2.0, -1.0, 0.0, 1.0, 2.0]), atol=1e-6 * sd)
 
 
 def _information(fit: Any) -> np.ndarray:

@@ -287,3 +287,18 @@ def test_bad_input_is_named() -> None:
         TransmissionCoefficients.of(SHAPE, mu=0.1, T_s=1.0, r_in=0.1, r_out=0.1, pretension_profile="flat")
     with pytest.raises(DatasetError, match="fewer than 20 samples"):
         sliding_regression(made_record(200.0), v_thres=10.0)
+
+
+def test_where_a_cable_is_loose_each_node_loses_its_share_of_its_own_torque() -> None:
+    """Torques of the stretches from 30 to 6 N·m: the first nodes are loose, the last keep the friction of the law."""
+    chain = Chain(shape=paper_shape(3), pretension=100.0, slack=True, num_nodes=4)
+    of = ChainEquations.of(chain, Trajectory("sine", 15.0, 10.0))
+    torque = np.array([30.0, 24.0, 18.0, 4.0, 2.0])
+    position = -np.concatenate([[0.0], np.cumsum(torque)]) / of.stiffness
+    y = np.zeros(of.size)
+    y[0], y[2:6], y[-2] = position[0], position[1:5], position[5]
+    e, level, _, _ = of.nodes(y)
+    np.testing.assert_allclose(e, torque)
+    np.testing.assert_allclose(level, np.maximum(of.level, torque[:-1] * of.share))
+    assert np.any(level > of.level)
+    assert np.any(level == of.level)
