@@ -6,7 +6,6 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import nbformat
 import pytest
 
 import tendonlab as tl
@@ -133,15 +132,3 @@ def keys(value: Any) -> Iterator[str]:
     elif isinstance(value, list):
         for item in value:
             yield from keys(item)
-
-
-def test_sections_of_notebooks_that_the_papers_page_names_exist() -> None:
-    headings = {
-        path.name[:2].upper(): re.findall(r"^#+ (.*)$", "\n".join(c.source for c in nbformat.read(path, 4).cells), re.M)
-        for path in (ROOT / "notebooks").glob("s?_*.ipynb")
-    }
-    rows = re.findall(r"^\| (S\d) \| ([^|]*) \| ([^|]*) \| [^|]+ \|$", PAGES["docs/papers.md"], re.M)
-    assert {paper for paper, _, _ in rows} == set(headings)
-    for paper, what, where in rows:
-        for section in re.findall(r'"([^"]+)"', re.sub(r"`papers.tables`.*", "", where)):
-            assert any(section in heading for heading in headings[paper]), f"{paper} {what}: {section}"

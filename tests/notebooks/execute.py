@@ -1,22 +1,26 @@
 """Run a notebook from top to bottom in a fresh kernel and an empty folder: it may rely on nothing but the package."""
 
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
 from nbclient import NotebookClient
 
 from diagnoses import HOOK
+from notebooks import papers_page
 
 FOLDER = Path(__file__).resolve().parents[2] / "notebooks"
 LONGEST = 300  # s per cell, on a busy machine
+LARGEST = 2_000_000  # characters that a page shows
 WITHIN = "assert len(differences) > 10\nassert differences['within'].all(), differences[~differences['within']]"
 
 
 def execute(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch, *, last: str = "pass") -> None:
     """Run the notebook `name`, whose diagnoses are shared with the tests, in `folder`, then the code `last`.
 
-    It writes nothing to stderr and draws at least one figure."""
+    It writes nothing to stderr and draws at least one figure; what docs/papers.md names is shown by the cell that it
+    names, and the page is no larger than 2 MB."""
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     monkeypatch.setenv("PYDEVD_DISABLE_FILE_VALIDATION", "1")
     notebook = nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
@@ -26,3 +30,16 @@ def execute(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch, *, last: s
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert [output.text for output in outputs if output.get("name") == "stderr"] == []
     assert any("image/png" in output.get("data", {}) for output in outputs)
+    texts = {cell.id: "\n".join(_text(output) for output in cell.get("outputs", [])) for cell in notebook.cells}
+    for row in papers_page.rows():
+        if row.cell and name.startswith(row.paper.lower()):
+            assert texts[row.cell], row
+            assert [label for label in row.labels if not papers_page.shows(label, texts[row.cell])] == []
+    assert sum(map(len, texts.values())) < LARGEST
+
+
+def _text(output: Any) -> str:
+    """What a page shows of an output: the drawing as SVG, whose comments hold its texts, else HTML, else plain text."""
+    data = output.get("data", {})
+    shown = next((data[kind] for kind in ("image/svg+xml", "text/html", "text/plain") if kind in data), "")
+    return f"{shown}{output.get('text', '')}"

@@ -50,18 +50,17 @@ def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequ
     axes[1].plot(ramps.index, ramps["force"] - estimated, ".", ms=1.5, color=MUTED, rasterized=True)
     axes[0].set(ylabel="cable force (N)", title="Fig. 10  Stiffness and damping of the cable, 200 to 500 N")
     axes[1].set(xlabel="time (s)", ylabel="residual (N)")
-    axes[0].legend(loc="lower right")
+    axes[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     for ax in axes:
         tidy(ax)
     return axes
 
 
 def draw_branches(
-    ax: Axes, loop: pd.DataFrame, branches: Mapping[str, float], *, tension: float, cable: int, every: int = 12
+    ax: Axes, loop: pd.DataFrame, branches: Mapping[str, float], *, tension: float, cable: int
 ) -> Axes:
     """Fig. 11: force of a cable in its bushing against the joint angle: the loop, and the four branches of eq. 11."""
-    part = loop.iloc[::every]
-    ax.plot(part["theta"], part["force"], ".", ms=2, color=MUTED, rasterized=True, label="loop (synthetic)")
+    ax.plot(loop["theta"], loop["force"], ".", ms=4, color=MUTED, rasterized=True, label="loop (twin)")
     law = bushing_law(branches)
     for sense, colour, text in ((1.0, BLUE, "v > 0"), (-1.0, RED, "v < 0")):
         i = 1 if sense > 0 else 2

@@ -89,7 +89,7 @@ def _motor(of: Constants) -> Parts:
 def _cable(of: Constants, mark: str) -> Parts:
     elements: list[Element] = [
         Zero(name=f"force{mark}", label="$F_r$" if not mark else f"$F_{{r,{mark[1:]}}}$"),
-        One(name=f"stretch{mark}", label=r"$\dot x_4$"),
+        One(name=f"stretch{mark}", label=rf"$\dot x_{{4{mark.replace('_', ',')}}}$"),
         C(name=f"x_4{mark}", label="1/K", effort=lambda x: of.T + of.K * x),
         R(name=f"c{mark}", label="c", effort=of.c),
     ]
