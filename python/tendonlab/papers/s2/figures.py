@@ -56,9 +56,7 @@ def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequ
     return axes
 
 
-def draw_branches(
-    ax: Axes, loop: pd.DataFrame, branches: Mapping[str, float], *, tension: float, cable: int
-) -> Axes:
+def draw_branches(ax: Axes, loop: pd.DataFrame, branches: Mapping[str, float], *, tension: float, cable: int) -> Axes:
     """Fig. 11: force of a cable in its bushing against the joint angle: the loop, and the four branches of eq. 11."""
     ax.plot(loop["theta"], loop["force"], ".", ms=4, color=MUTED, rasterized=True, label="loop (twin)")
     law = bushing_law(branches)
