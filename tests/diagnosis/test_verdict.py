@@ -27,6 +27,19 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
     assert found.probability["parameters_only"] < 0.01
 
 
+@pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 9.0)])
+def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tuned: float, refitted: float) -> None:
+    """A floor that is assumed, or from few repeats, may be too low: what tuning does not shrink is no parameter."""
+    levels = Levels(
+        nominal=1.45 if not repeated else 1.25, tuned=tuned, refitted=refitted, explained=None, repeated=repeated
+    )
+    found = decide((), (), levels)
+    assert found.verdict == "no_gap"
+    assert found.probability["no_gap"] > 2.0 * found.probability["parameters_only"]
+    shrunk = replace(levels, tuned=0.8 * levels.nominal, refitted=0.8 * levels.nominal)
+    assert decide((), (), shrunk).verdict == "parameters_only"
+
+
 def test_where_runs_repeat_they_decide_and_not_the_plain_floor() -> None:
     assert nothing_selected(refitted=1e6, repeated=True, tuned=1.1).verdict == "parameters_only"
     assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"

@@ -36,13 +36,7 @@ def answer(
     if search.selected:  # an effect that was established stands out of the floor
         floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
-    levels = Levels(
-        nominal=nominal.mean_square if floor.repeated else _plain_level(stages["nominal"], floor),
-        tuned=search.tuned.mean_square,
-        refitted=_plain_level(stages["refitted"], floor),
-        explained=_explained(stages, floor) if search.selected else None,
-        repeated=floor.repeated,
-    )
+    levels = _levels(search, nominal, stages, floor)
     verdict = decide(search.rounds, search.selected, levels)
     records = where.PortRecords(case, stages["with_effect"], judged)
     held_out = _per_experiment(case, stages, floor, judged)
@@ -87,6 +81,16 @@ def answer(
         },
         details={**notes.details(case, floor, nominal, search), "steps": _steps(case, search, steps)},
         seconds=seconds(),
+    )
+
+
+def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor) -> Levels:
+    return Levels(
+        nominal=nominal.mean_square if floor.repeated else _plain_level(stages["nominal"], floor),
+        tuned=search.tuned.mean_square,
+        refitted=_plain_level(stages["refitted"], floor),
+        explained=_explained(stages, floor) if search.selected else None,
+        repeated=floor.repeated,
     )
 
 

@@ -46,15 +46,16 @@ class Verdict:
 
 def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> Verdict:
     """The verdict on the effects `selected` in these `rounds`, and its probabilities."""
-    nothing_to_tune = levels.repeated and NEAR_FLOOR > levels.tuned > (1 - MATTERS) * levels.nominal
-    at_floor = levels.nominal < NO_GAP or (nothing_to_tune and not selected)
+    after = levels.tuned if levels.repeated else levels.refitted
+    gained = 1.0 - after / levels.nominal - MATTERS  # by tuning, beyond what is too little to matter
     room = NEAR_FLOOR - levels.tuned if levels.repeated else min(SOFT, FAR - levels.refitted)
+    at_floor = levels.nominal < NO_GAP or (gained < 0 < room and not selected)
     explained = levels.explained or 0.0
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
         "no_gap": _step(SOFT if at_floor else NO_GAP - levels.nominal) * (1.0 if not selected else none),
-        "parameters_only": _step(levels.nominal - NO_GAP) * none * _step(room),
+        "parameters_only": _step(levels.nominal - NO_GAP) * _step(gained) * none * _step(room),
         "effect": (1.0 - none) * (_step(explained - EXPLAINED) if selected else 0.1),
         "unknown_effect": (1.0 - none) * (_step(EXPLAINED - explained) if selected else 0.5)
         + (0.0 if room > 0 else none),
