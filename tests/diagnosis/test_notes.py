@@ -6,6 +6,7 @@ from typing import Any
 import pandas as pd
 
 from tendonlab.diagnosis.answer import notes
+from tendonlab.diagnosis.search.contest import Round
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.problem import Fitter
 
@@ -32,3 +33,15 @@ def test_a_held_out_experiment_that_gets_no_better_is_a_warning() -> None:
     (warning,) = notes.not_improved(gap, ["joint:stribeck"])
     assert warning.startswith("Held-out experiment a: joint:stribeck does not shrink the gap (2.06 noise floors before")
     assert notes.not_improved(gap, []) == []
+
+
+def test_effects_that_no_fit_succeeded_with_or_that_were_not_tried_are_warnings(fitter: Fitter, twin_case: Any) -> None:
+    fitted = fitter.fit(twin_case.system, max_iterations=1)
+    contest = Round((), (), (), {None: 1.0}, None, set(), failed=("joint:coulomb", "joint:stribeck"))
+    search = Search(fitter, tuned=fitted, steps=(), rounds=(contest,))
+    said = "No fit succeeded with joint:coulomb, joint:stribeck, which does not exclude them."
+    assert said in notes.warnings(twin_case, fitter.floor, search)
+    (warning,) = notes.not_asked(twin_case, search, ["joint:presliding"])
+    assert warning.startswith("Asked for and not tried: joint:presliding (")
+    assert notes.not_asked(twin_case, search, None) == []
+    assert notes.not_asked(twin_case, search, [next(iter(twin_case.system.effects))]) == []

@@ -74,7 +74,8 @@ def _on_the_failed(search: Search) -> list[str]:
     failed = dict.fromkeys(effect for contest in search.rounds for effect in contest.failed)
     tried = {trial.effect for contest in search.rounds for trial in contest.trials}
     names = [effect for effect in failed if effect not in tried]
-    return [f"No fit with {', '.join(names)} succeeded, so nothing is known of it."] if names else []
+    them = "them" if len(names) > 1 else "it"
+    return [f"No fit succeeded with {', '.join(names)}, which does not exclude {them}."] if names else []
 
 
 def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list[str]:

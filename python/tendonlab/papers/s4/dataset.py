@@ -29,12 +29,13 @@ MOTIONS = (  # name, amplitude (deg), period (s), repeat, split
 
 @dataclass(frozen=True, kw_only=True)
 class Nominal:
-    """What the simulator to be diagnosed believes: stiffness, N/m, mean friction coefficient, and whether it knows that
-    the coefficient differs by direction."""
+    """What the simulator to be diagnosed believes: stiffness, N/m, mean friction coefficient, whether it knows that the
+    coefficient differs by direction, and pretension, N, which screws set to about 10 %."""
 
     k: float
     mu: float
     knows_direction: bool = False
+    T_p: float = 50.0
 
 
 def nominal(*, knows_direction: bool) -> Nominal:
@@ -87,7 +88,7 @@ def _toml(of: Case, believed: Nominal, name: str, system: str) -> str:
     effects = ["contact:capstan", "contact:presliding", "contact:stribeck", "contact:viscous"]
     values = {
         "cable_stiffness": (believed.k, 0.3 * believed.k),
-        "pretension": (of.T_p, 1.0),
+        "pretension": (believed.T_p, 0.1 * believed.T_p),
         "pulley_radius": (m.r, 0),
         "initial_wrap_angle": (m.theta_w0, 0),
         "friction_coefficient": (believed.mu, 0.03),
