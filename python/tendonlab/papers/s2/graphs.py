@@ -148,7 +148,7 @@ WHOLE_PLACES: dict[str, Place] = {
     **MOTOR_PLACES, "reverse": (6, -1.3), "nut_2": (6, -2.4), "F_a_1": (6, 1.1), "F_a_2": (4.9, -2.4),
     "force_1": (7.8, 0), "stretch_1": (7.8, 1), "x_4_1": (7.1, 1.8), "c_1": (8.5, 1.8),
     "force_2": (7.8, -2.4), "stretch_2": (7.8, -3.4), "x_4_2": (7.1, -4.2), "c_2": (8.5, -4.2),
-    **{name: (x + 7.2, y - 1.2) for name, (x, y) in JOINT_PLACES.items()}, "arm_1": (9.2, 0), "arm_2": (9.2, -2.4),
+    **{name: (x + 8.2, y - 1.2) for name, (x, y) in JOINT_PLACES.items()}, "arm_1": (9.5, 0), "arm_2": (9.5, -2.4),
 }  # fmt: skip
 MOTOR_ENDS: dict[str, Place] = {"F_act_1": (7.2, 0), "reverse": (6, -1), "F_act_2": (7.2, -1)}
 JOINT_ENDS: dict[str, Place] = {"F_r_1": (0, 0.8), "F_r_2": (0, -0.8)}
