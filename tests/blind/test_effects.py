@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab.blind.rig import effect_parameters, largest_amplitude
+from tendonlab.blind.rig import draw_rig, effect_parameters, largest_amplitude
 
 TRUTH = {
     "gear_ratio": 8.0, "motor_coulomb": 0.03, "motor_viscous": 2e-4, "motor_inertia": 1e-4, "joint_coulomb": 0.2,
@@ -58,3 +58,9 @@ def test_bristles_break_away_after_a_hundredth_of_a_radian_of_the_joint(element:
 def test_every_effect_has_a_largest_amplitude() -> None:
     for effect in (*EXPECTED, "joint:presliding"):
         assert largest_amplitude(SimpleNamespace(effect=effect)) > 1.0  # type: ignore[arg-type]
+
+
+def test_effects_of_a_sign_are_drawn_with_both() -> None:
+    draws = [np.random.default_rng(seed) for seed in range(12)]
+    rigs = [draw_rig(draw, effect="load:offset", kind="effect", num_samples=20) for draw in draws]
+    assert {rig.shape["sign"] for rig in rigs} == {-1.0, 1.0}

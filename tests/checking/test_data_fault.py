@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from checking.pendulum import record
+from checking.pendulum import COULOMB, GRAVITY, INERTIA, VISCOUS, record
 from tendonlab.diagnosis import fault
 
 
@@ -40,3 +40,14 @@ def test_the_error_of_an_experiment_is_the_mean_square_of_its_own_samples(tmp_pa
     run = replace(first, name="still", data=still, initial={"joint_angle": 0.0, "joint_velocity": 0.0})
     (found,) = fault._errors(run, rig.system(), "free").values()  # type: ignore[union-attr]
     assert found == pytest.approx(np.mean(angle**2), rel=0.05)
+
+
+def test_the_error_of_right_logs_is_small(tmp_path: Path) -> None:
+    """A simulator with the true values: less than a thousandth of the power of the motion is left."""
+    rig = record().write(tmp_path)
+    system = rig.system().with_parameters(
+        {"inertia": INERTIA, "gravity_torque": GRAVITY, "coulomb": COULOMB, "viscous": VISCOUS}
+    )
+    for run in rig.train[:2]:
+        (found,) = fault._errors(run, system, "free").values()  # type: ignore[union-attr]
+        assert found < 1e-3 * np.var(run.data["joint_angle"])

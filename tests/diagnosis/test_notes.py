@@ -1,6 +1,7 @@
 """What notes say of a fit, of the replay and of held-out experiments."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
@@ -8,6 +9,7 @@ import pandas as pd
 from tendonlab.diagnosis.answer import notes
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
 
@@ -21,6 +23,22 @@ def test_what_the_experiments_state_themselves_is_told(fitter: Fitter, twin_case
     assert warning in notes.warnings(case, fitter.floor, search)
     rows = notes.details(case, fitter.floor, fitted, search)["parameters"]
     assert [name for name, row in rows.items() if not row["informed"]] == ["gravity_torque"]
+
+
+def test_a_fit_that_did_not_converge_is_a_warning(nominal: Fitted) -> None:
+    """Of the refitted simulator and of the final model, each by its own words."""
+    tuned = replace(nominal, converged=False, message="too few rounds")
+    final = replace(nominal, added=("joint:stribeck",), converged=True)
+    stopped = "The fit of the refitted simulator did not converge: too few rounds."
+    assert _convergence(tuned, final) == [stopped]
+    assert _convergence(replace(tuned, converged=True), final) == []
+    other = "The fit of the model with joint:stribeck did not converge: no descent."
+    assert _convergence(tuned, replace(final, converged=False, message="no descent")) == [stopped, other]
+
+
+def _convergence(tuned: Fitted, final: Fitted) -> list[str]:
+    search: Any = SimpleNamespace(tuned=tuned, final=final)
+    return [note for note in notes._on_the_fits(search) if "converge" in note]
 
 
 def test_gains_of_a_replay_have_the_units_of_command_over_motion(twin_case: Any) -> None:

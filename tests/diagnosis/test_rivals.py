@@ -6,16 +6,18 @@ import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from tendonlab import _core
 from tendonlab.diagnosis.answer.verdict import Levels, decide, marginals
-from tendonlab.diagnosis.search import workshop
+from tendonlab.diagnosis.search import rivals, workshop
 from tendonlab.diagnosis.search.contest import Round, next_effect, probabilities
 from tendonlab.diagnosis.search.rivals import Place, drop_effects, improve
 from tendonlab.diagnosis.search.screen import Screened
-from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial
+from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -125,6 +127,28 @@ def test_a_rival_takes_over_where_it_is_clearly_better(
     if improved is not None:
         assert improved.won is not None
         assert improved.won.holder is rival
+
+
+@pytest.mark.parametrize(("above", "halves", "added"), [(1.0, True, True), (1.0, False, False), (-1.0, True, False)])
+def test_a_rival_with_one_more_effect_wins_by_evidence_and_by_predicting_halves(
+    trial: Callable[..., Trial],
+    fitter: Fitter,
+    above: float,
+    halves: bool,
+    added: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Evidence above the bar alone is not enough, nor are halves that are predicted better."""
+    base: Any = SimpleNamespace(evidence=-50.0, counted=lambda shares: base)
+    pair: Any = SimpleNamespace(evidence=-50.0 + bar_for_further_effect(fitter, 0.0).evidence + above, shares=())
+    round_ = SimpleNamespace(accepted=SimpleNamespace(fitted=pair))
+    monkeypatch.setattr(rivals, "next_effect", lambda *_, **__: round_)
+    monkeypatch.setattr(rivals, "predicts_better", lambda _, before, after: halves and (before, after) == (base, pair))
+    shop: Any = None
+    found = rivals._rival_and_one_more(fitter, base, trial(DELAY, 100.0), {}, shop)
+    assert (found is not None) == added
+    if found is not None:
+        assert found.model is pair
 
 
 def test_a_rival_takes_the_place_and_not_the_companions(trial: Callable[..., Trial], nominal: Fitted) -> None:
