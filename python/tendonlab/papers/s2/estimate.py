@@ -37,13 +37,6 @@ class Estimate:
         """Whether each interval holds the true value."""
         return {name: abs(value - truth[name]) <= self.half_widths[name] for name, value in self.values.items()}
 
-    def widened(self, factor: float) -> Estimate:
-        """The same with intervals wider by `factor`, for samples that repeat one another."""
-        from dataclasses import replace
-
-        wide = {name: factor * width for name, width in self.half_widths.items()}
-        return replace(self, half_widths=wide, covariance=factor**2 * self.covariance)
-
     def table(self) -> pd.DataFrame:
         """Rows by name: value and half width of the 95 % interval."""
         return pd.DataFrame({"value": pd.Series(self.values), "half_width_95": pd.Series(self.half_widths)})
