@@ -152,6 +152,7 @@ def test_a_sketch_is_finished_where_it_can_reach_half_of_the_rivals_gain() -> No
     assert _goal(repeated, base, evident(-30.0), -60.0) == pytest.approx(90.0 - 20.0)  # 50 nats behind the best
     assert _goal(repeated, base, evident(20.0), -60.0) == pytest.approx(90.0 - 70.0)
     assert _goal(alone, base, None, -60.0) == pytest.approx(90.0 * np.exp(-2.0 * 20.0 / 100))
+    assert 1e300 < _goal(alone, base, None, -1e9) < np.inf  # a rival far behind the base sets no goal
 
 
 def test_a_parameter_three_sd_from_its_prior_is_strained_if_it_was_stated() -> None:

@@ -9,7 +9,8 @@ import numpy as np
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.lags import Lags
 
-SURE = 5.0  # sd, of the lag and of its scatter among experiments, that make a lag
+SURE = 5.0  # sd that make a lag which all experiments share
+APART = 6.0  # sd, of the lag and of its scatter among experiments, by which one experiment lags the others
 LEAST = 1.5  # samples by which an experiment must lag the others
 LEAST_SHARED = 0.25  # of a sample, of a lag that all share
 RESOLVED = 0.25  # of a sample: no lag is known better
@@ -24,9 +25,13 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     """What the lags of the outputs in the experiments `names` say; `step`: from sample to sample, s."""
     known = np.hypot(lags.sd, RESOLVED * step)
     levels = np.fmin(1.0 / np.fmax(lags.weight, 1e-300), UNKNOWN)
-    shared, total = (np.array(x) for x in zip(*map(_common, lags.seconds, known, levels), strict=True))
+    shared, scatter = (np.array(x) for x in zip(*map(_common, lags.seconds, known, levels), strict=True))
+    total = np.hypot(known, scatter[:, None] * levels)
     away = lags.seconds - shared[:, None]
-    late = (np.abs(away) > SURE * total) & (np.abs(away) > LEAST * step) & (np.abs(away) * lags.weight > MATTERS)
+    # What the simulator lacks delays all outputs: an experiment is apart where even the largest scatter of any explains
+    # nothing.
+    apart = APART * np.hypot(known, np.max(scatter) * levels)
+    late = (np.abs(away) > apart) & (np.abs(away) > LEAST * step) & (np.abs(away) * lags.weight > MATTERS)
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
     return [*found, *_all_late(lags, inputs, shared, total, step)]
 
@@ -78,20 +83,20 @@ def _all_late(
         )
 
 
-def _common(seconds: np.ndarray, sd: np.ndarray, level: np.ndarray) -> tuple[float, np.ndarray]:
-    """The lag that most experiments share, and the sd of each about it: its own `sd`, and a share of its `level`, the
-    lag that is worth what the equations leave, since what the simulator lacks resembles a lag. The share is such that
-    the middle experiment is as far away as normal errors are: a few that differ much do not change it."""
-    common, total = float(np.median(seconds)), sd
+def _common(seconds: np.ndarray, sd: np.ndarray, level: np.ndarray) -> tuple[float, float]:
+    """The lag that most experiments share, and their scatter about it beyond their own `sd`: a share of the `level` of
+    each, the lag that is worth what the equations leave, since what the simulator lacks resembles a lag. The share is
+    such that the middle experiment is as far away as normal errors are: a few that differ much do not change it."""
+    common, scatter = float(np.median(seconds)), 0.0
     shares = np.concatenate([[0.0], np.geomspace(*SHARES, 60)])
     for _ in range(ROUNDS):
         away = np.abs(seconds - common)
         middle = [np.median(away / np.hypot(sd, share * level)) for share in shares]
-        total = np.hypot(sd, shares[int(np.argmax([*(np.array(middle[:-1]) <= MIDDLE), True]))] * level)
+        scatter = float(shares[int(np.argmax([*(np.array(middle[:-1]) <= MIDDLE), True]))])
         order = np.argsort(seconds)
-        weight = np.cumsum(1.0 / total[order] ** 2)
+        weight = np.cumsum(1.0 / np.hypot(sd, scatter * level)[order] ** 2)
         common = float(seconds[order][np.searchsorted(weight, 0.5 * weight[-1])])
-    return common, total
+    return common, scatter
 
 
 def _time(seconds: float) -> str:

@@ -18,6 +18,7 @@ CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to
 BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
 STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which it compensates for something
 NUM_COOLINGS = 6  # fits under noise as large as the misfit, at the most
+MOST = 700.0  # logarithm of the largest ratio of costs: far behind is behind
 COOLED = 0.01  # relative change of the cost at which a cooling ends: all that counts is whether it halves the misfit
 
 Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
@@ -84,7 +85,7 @@ def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float | None)
     if fitter.floor.repeated:
         return base.cost - needed
     rows = sum(len(run.residual) for run in base.runs)  # a gain under noise of one's own, in cost under the base's
-    return base.cost * math.exp(-2.0 * needed / rows)
+    return base.cost * math.exp(min(-2.0 * needed / rows, MOST))
 
 
 def strained(fitter: Fitter, base: Fitted) -> bool:
