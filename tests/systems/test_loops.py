@@ -82,10 +82,12 @@ def exact_step(q, v, u, dt):
     return q + v * dt + 0.5 * u * dt**2, v + u * dt
 
 
-def sampled_by_hand(reference, *, sample, limit=np.inf, late=0.0, sensor_late=0.0, weight=1.0, kp=30.0, kd=4.0):
+def sampled_by_hand(
+    reference, *, sample, limit=np.inf, late=0.0, sensor_late=0.0, bias=0.0, weight=1.0, kp=30.0, kd=4.0
+):
     """A unit mass, no friction: computer reads, differentiates backwards, commands `late` after; all in closed form.
     Until the first command arrives the one before the record acts, which was the same."""
-    first = float(np.clip(kp * (reference(0.0) - 0.1), -limit, limit))
+    first = float(np.clip(kp * (reference(0.0) - (0.1 + bias)), -limit, limit))
     pieces = [(0.0, 0.1, 0.0, first)]  # start, q, v, effort from there on
     due, last_y, last_r = [], None, None
 
@@ -101,7 +103,7 @@ def sampled_by_hand(reference, *, sample, limit=np.inf, late=0.0, sensor_late=0.
     for k in range(round(2.0 / sample)):
         t = k * sample
         apply(t)
-        y, r = state(t - sensor_late)[0], reference(t)
+        y, r = state(t - sensor_late)[0] + bias, reference(t)
         rate = 0.0 if last_y is None else (weight * (r - last_r) - (y - last_y)) / sample
         due.append((t + late, float(np.clip(kp * (r - y) + kd * rate, -limit, limit))))
         last_y, last_r = y, r
@@ -118,6 +120,14 @@ def test_sampled_controller(limit, weight):
     done = run(joint(), T, loop=closed, position=[0.1])
     other = sampled_by_hand(lambda t: np.interp(t, T, wave(T)), sample=0.004, limit=limit, weight=weight)
     assert done["joint_angle"] == pytest.approx(other, abs=1e-11)  # constant effort between ticks: no error of a step
+
+
+def test_a_sampled_controller_reads_the_biased_sensor():
+    """The error of its law has the bias in it; the record shows what the sensor reads."""
+    system = joint(("sensor.joint_angle:bias",), sensor__joint_angle_bias=0.05)
+    done = run(system, T, loop=loop(linear(T, wave(T)), sample_time=0.004), position=[0.1])
+    other = sampled_by_hand(lambda t: np.interp(t, T, wave(T)), sample=0.004, bias=0.05)
+    assert done["joint_angle"] - 0.05 == pytest.approx(other, abs=1e-11)
 
 
 def test_sampled_controller_with_delays():
