@@ -77,6 +77,16 @@ def test_what_is_hardly_measured_is_missing():
     assert np.isfinite(np.delete(found, 100)).all()
 
 
+@pytest.mark.parametrize("factor", [2, 3, 5])
+def test_two_samples_make_no_parabola(factor):
+    values = np.sin(TIME)
+    values[100:104] = np.nan
+    values[105:120] = np.nan
+    found = local_parabolas(TIME, values, factor).values
+    assert np.abs(found - np.sin(TIME[::factor]))[np.isfinite(found)].max() < 1e-6
+    assert np.isnan(found).sum() >= 10 // factor
+
+
 def test_a_log_of_1_khz_becomes_one_of_100_hz_with_the_same_impulses(rig, torque):
     few, after = thin(rig)
     assert len(after.time) == 401

@@ -131,6 +131,20 @@ def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> Non
     assert "explanation: 0.21" in replace(both, sets=()).sentence  # the less certain of the two
 
 
+def test_twins_of_a_selected_effect_are_named_and_count_with_it(with_effect: Diagnosis) -> None:
+    first, second, twin = "joint:stribeck", "sensor.joint_angle:delay", "actuation:delay"
+    shares = (((first, second), 0.5), ((first, twin), 0.45), ((first,), 0.02))
+    tied = replace(
+        with_effect,
+        selected=(first, second),
+        indistinguishable=((second, twin),),
+        sets=tuple({"effects": list(names), "probability": p} for names, p in shares),
+        verdict_probability={**with_effect.verdict_probability, "effect": 0.98},
+    )
+    assert "cannot tell delay of the joint angle sensor from delay of the actuator." in tied.sentence
+    assert "explanation: 0.95" in tied.sentence
+
+
 def test_the_sentence_is_never_surer_than_its_verdict(with_effect: Diagnosis) -> None:
     doubt = {"data_fault": 0.0, "no_gap": 0.0, "parameters_only": 0.0, "effect": 0.7, "unknown_effect": 0.3}
     assert "explanation: 0.70" in replace(with_effect, verdict_probability=doubt).sentence  # its set alone: 0.93

@@ -65,7 +65,7 @@ def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinne
     """Every `factor`-th value, from a parabola fitted to the samples up to the next ones on both sides. NaN where fewer
     than a third of those were measured."""
     rows, times = _windows(values, factor), _windows(time, factor)
-    enough = 4 * np.isfinite(rows).sum(axis=1) > 3 * factor
+    enough = np.isfinite(rows).sum(axis=1) >= max(3.0, 0.8 * factor)
     rows, times = rows[enough], times[enough]
     there = np.isfinite(rows)
     place = np.where(there, times - time[::factor][enough, None], 0.0) / (time[-1] - time[0])
@@ -136,7 +136,7 @@ def _means(experiment: Experiment, name: str, factor: int) -> np.ndarray:
     kept = np.append(np.arange(0, len(time), factor), len(time) - 1)
     length = np.diff(time[kept])
     rise = np.diff(gathered[kept])
-    return np.where(length > 0, rise / np.where(length > 0, length, 1.0), values[kept[:-1]])
+    return np.asarray(np.where(length > 0, rise / np.where(length > 0, length, 1.0), values[kept[:-1]]))
 
 
 def _has_gaps(time: np.ndarray) -> bool:

@@ -28,15 +28,23 @@ def sentence(diagnosis: Diagnosis) -> str:
 
 
 def certainty(diagnosis: Diagnosis) -> float:
-    """The probability that the sentence quotes: of the verdict, or of the selected set where that is less sure."""
+    """The probability that the sentence quotes: of the verdict, or of the selected set where that is less sure. Sets
+    that the data cannot tell from the selected one count with it: the sentence names them."""
     of_verdict = diagnosis.verdict_probability[diagnosis.verdict]
     if diagnosis.verdict != "effect" or not diagnosis.selected:
         return of_verdict
     chosen = frozenset(diagnosis.selected)
-    for candidate in diagnosis.sets:
-        if frozenset(candidate["effects"]) == chosen:
-            return min(of_verdict, float(candidate["probability"]))
+    twin_of = {name: own for own in chosen for name in _twins(diagnosis, own)}
+    alike = [s for s in diagnosis.sets if frozenset(twin_of.get(name, name) for name in s["effects"]) == chosen]
+    if alike:
+        return min(of_verdict, sum(float(s["probability"]) for s in alike if len(s["effects"]) == len(chosen)))
     return min([of_verdict, *(finding.probability for finding in diagnosis.effects if finding.name in chosen)])
+
+
+def _twins(diagnosis: Diagnosis, chosen: str) -> list[str]:
+    """What the data cannot tell from an effect that was selected, unless it was selected too."""
+    groups = [group for group in diagnosis.indistinguishable if chosen in group]
+    return [name for group in groups for name in group if name not in diagnosis.selected]
 
 
 def _shrinks(diagnosis: Diagnosis, start: str, subject: str) -> str:
@@ -72,14 +80,17 @@ def _effect(diagnosis: Diagnosis) -> str:
     several = f"{_COUNTS.get(len(names), len(names))} unmodelled effects explain"
     opening = "An unmodelled effect explains" if one else several
     tail = _shrinks(diagnosis, "from_refitted", f"Adding {'it' if one else 'them'}")
-    return f"{opening} the gap: {phrases(names, diagnosis.system)}.{_ties(diagnosis) if one else ''}{tail}"
+    return f"{opening} the gap: {phrases(names, diagnosis.system)}.{_ties(diagnosis)}{tail}"
 
 
 def _ties(diagnosis: Diagnosis) -> str:
-    """What the data cannot tell from the one effect that was selected."""
-    (chosen,) = diagnosis.selected
-    others = [name for group in diagnosis.indistinguishable if chosen in group for name in group if name != chosen]
-    return f" These data cannot tell it from {phrases(others, diagnosis.system, last='or')}." if others else ""
+    """What the data cannot tell from the effects that were selected."""
+    kind, told = diagnosis.system, ""
+    for chosen in diagnosis.selected:
+        if others := _twins(diagnosis, chosen):
+            own = "it" if len(diagnosis.selected) == 1 else phrases([chosen], kind)
+            told += f" These data cannot tell {own} from {phrases(others, kind, last='or')}."
+    return told
 
 
 def _unknown(diagnosis: Diagnosis) -> str:
