@@ -99,7 +99,7 @@ class Simulation {
     bool stale = false;  ///< the step began on its guard, in a mode that does not hold
   };
   static constexpr double on_guard = 1e-13;
-  static constexpr double RETRY = 1.1;  ///< growth of the reach of explicit steps while none is taken
+  static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
 
   /// The shortest time that counts.
   double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
