@@ -5,6 +5,7 @@ import json
 import pickle
 import signal
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import replace
 from pathlib import Path
@@ -217,6 +218,15 @@ def test_further_starts_scatter_as_the_priors_do(monkeypatch: pytest.MonkeyPatch
     assert np.std(values) == pytest.approx(0.05, rel=0.2)
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C interrupts, also where tests run in the background of a shell, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_interrupt_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C while fits run, each of which waits for it: none can end before, however fast or busy the machine is."""
     solve = Problem.solve
