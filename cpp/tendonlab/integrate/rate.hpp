@@ -155,4 +155,12 @@ template <class System, class T, class Inputs>
                                           const Frame<System, T>& frame, const Inputs& in) {
   return inlined_rate(system, y, frame, in);
 }
+template <class System, class T, class Inputs>
+TENDONLAB_INLINE auto rate_for_step(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
+                                    const Inputs& in) {
+  if constexpr (inlines_laws<System, T>)
+    return inlined_rate(system, y, frame, in);
+  else
+    return rate(system, y, frame, in);
+}
 }  // namespace tendonlab::integrate

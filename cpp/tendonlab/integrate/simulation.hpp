@@ -55,7 +55,10 @@ class Simulation {
       if (!(wish > 0)) {  // rejected
         ++trajectory.rejected;
         const double shorter = length * std::max(0.15, -wish);
-        explicitly ? void(explicit_reach = shorter) : shrink(shorter);
+        if (explicitly)
+          explicit_reach = shorter;
+        else
+          shrink(shorter);
         continue;
       }
       const Crossing first = earliest_crossing(values(step));

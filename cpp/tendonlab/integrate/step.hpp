@@ -66,10 +66,7 @@ TENDONLAB_INLINE Y stage(int i, const System& system, const Y& y, const Frame<Sy
   Rate<T, n, nz> f = blocks.rate;
   if (i > 0) {
     at.at.time = y.at.time + Tableau::c[i] * h;
-    if constexpr (inlines_laws<System, T>)
-      f = inlined_rate(system, at, frame, in);
-    else
-      f = rate(system, at, frame, in);
+    f = rate_for_step(system, at, frame, in);
   }
   const Plain<T> per_h = 1.0 / h, drift = h * Tableau::d[i];
   for (std::size_t j = 0; j < n; ++j) {
@@ -107,12 +104,7 @@ template <class Tableau, class System, class T, class Inputs>
 template <class System, class T, class Inputs>
 TENDONLAB_INLINE StateOf<System, T> change(const System& system, const StateOf<System, T>& y,
                                            const Frame<System, T>& frame, const Inputs& in, Plain<T> h) {
-  const Rate<T, System::dof, memories<System>> f = [&] {
-    if constexpr (inlines_laws<System, T>)
-      return inlined_rate(system, y, frame, in);
-    else
-      return rate(system, y, frame, in);
-  }();
+  const auto f = rate_for_step(system, y, frame, in);
   StateOf<System, T> k;
   for (std::size_t j = 0; j < System::dof; ++j) {
     k.at.position[j] = h * y.at.velocity[j];
@@ -129,7 +121,7 @@ template <class Tableau, class System, class T, class Inputs>
                                                              Plain<T> h) {
   using Y = StateOf<System, T>;
   constexpr int last = Tableau::stages - 1;
-  Y k[Tableau::stages], at = y;
+  Y k[Tableau::stages], at;
   for (int i = 0; i <= last; ++i) {
     at = y;
     for (int j = 0; j < i; ++j) add(at, Tableau::A[i][j], k[j]);
