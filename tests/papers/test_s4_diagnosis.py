@@ -1,5 +1,5 @@
-"""S4's own gaps, withheld from the simulator of its twin: elastic ends against a mere softer cable, and a friction
-coefficient that differs by direction."""
+"""S4's own gaps, withheld from the simulator of its twin: elastic ends against a mere softer cable, a friction
+coefficient that differs by direction, and friction of the joint."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -69,12 +69,21 @@ def test_a_wrong_pretension_is_a_parameter(tmp_path: Path) -> None:
     assert found.details["parameters"]["pretension"]["value"] == pytest.approx(56.0, abs=0.1)
 
 
-def test_friction_of_the_joint_is_not_found_and_the_report_says_so(tmp_path: Path) -> None:
-    """E3: dry friction alone has no finite derivatives where the joint sticks, so no fit with it succeeds. To be mended
-    where the simulation differentiates a joint at rest; until then the gap must not pass for explained."""
+def test_friction_of_the_joint_is_found_part_by_part(tmp_path: Path) -> None:
+    """E3: a LuGre joint of 0.05 N·m, and 0.06 at rest; three effects of the library together are that law."""
     found = diagnosed(tmp_path / "joint", s4.case("E3"), knows_direction=True)
-    assert found.verdict == "unknown_effect"
-    assert any("joint:coulomb" in warning and warning.startswith("No fit succeeded with") for warning in found.warnings)
+    assert found.verdict == "effect"
+    assert found.selected == ("joint:coulomb", "joint:stribeck", "joint:presliding")
+    numbers = {name: row["value"] for effect in found.effects[:3] for name, row in effect.parameters.items()}
+    wanted = {
+        "coulomb": 0.05,
+        "static_excess": 0.01,
+        "stribeck_velocity": 0.01,
+        "bristle_stiffness": 1e3,
+        "bristle_damping": 10.0,
+    }
+    assert numbers == pytest.approx(wanted, rel=0.05)
+    assert found.shrinkage["from_refitted"]["value"] > 0.9
 
 
 def test_the_rest_of_table_iii_can_be_fitted(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from integrate.rig import differences, relative, run
 from tendonlab.errors import ParameterError
 from tendonlab.simulation.system import System
 
@@ -39,6 +40,27 @@ def test_dry_friction_lags_by_the_closed_form() -> None:
     stuck = run["joint_angle"][(log.index > 4.05) & (log.index < 4.3)]
     assert np.ptp(stuck) == 0.0
     assert run.num_events > 2
+
+
+def test_derivatives_of_a_joint_that_sticks_are_those_of_differences() -> None:
+    """At rest a contact slides in no direction, and its coefficient differs by none: no derivative may be 0/0 there."""
+    effects = (*DRY, "contact:asymmetry", "contact:presliding", "joint:coulomb")
+    more = {"contact_coefficient_asymmetry": 0.07, "bristle_stiffness": 1e5, "bristle_damping": 100.0}
+    names = ["joint_coulomb", "friction_coefficient", "contact_coefficient_asymmetry", "cable_stiffness"]
+    system = System(
+        kind="ccsrm",
+        parameters={**OWN, **more, "friction_coefficient": MU, "smallest_level": 1e-3, "joint_coulomb": 0.05},
+        effects=effects,
+    )
+    time = np.linspace(0.0, 2.0, 401)
+    angle = 0.075 * (1 - np.cos(np.pi * time))
+    exact = run(system, time, {"driver_angle": angle}, by=names, tolerance=1e-10)
+    assert exact.events >= 2
+    for name in names:
+        step = 1e-4 * system.parameters[name]
+        wanted = differences(system, name, time, {"driver_angle": angle}, step=step, tolerance=1e-12)
+        for got, slope in zip(exact.gradient[name], wanted, strict=True):
+            assert relative(got, slope) < 1e-4, name
 
 
 def test_without_friction_all_sections_of_a_cable_pull_alike() -> None:

@@ -28,7 +28,7 @@ struct ContactAsymmetry {
   }
   template <class S>
   S factor(const Sliding<S>& at) const {
-    constexpr double smallest = 1e-300;  // without wrap nothing changes
+    constexpr double smallest = 1e-50;  // without wrap or direction nothing changes, and no derivative is inf - inf
     const S mean = friction_coefficient * at.wrap, own = (1.0 + at.direction * difference) * mean;
     return (wrap_loss(own, at.direction) + smallest) / (wrap_loss(mean, at.direction) + smallest);
   }
