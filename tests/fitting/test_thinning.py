@@ -135,6 +135,18 @@ def test_a_torque_that_shakes_the_joint_is_kept(rig, torque):
     assert len(after.time) == len(TIME)
 
 
+def test_an_input_that_goes_straight_between_samples_has_other_means(rig):
+    """As the log says, so the means are made: a ramp that is held lags half a sample behind one that goes straight."""
+    (experiment,) = rig.experiments
+    straight = replace(experiment, holds={"motor_torque": False})
+    held, ramp = (
+        thinned(replace(rig, experiments=(replace(of, data=of.data.assign(motor_torque=TIME)),)))["run"].data
+        for of in (experiment, straight)
+    )
+    assert ramp["motor_torque"].iloc[:-1].to_numpy() == pytest.approx(TIME[:-1:10] + 0.005, abs=1e-12)
+    assert (ramp - held)["motor_torque"].iloc[:-1].to_numpy() == pytest.approx(0.0005, abs=1e-12)
+
+
 def test_a_log_with_a_gap_or_of_100_hz_stays_as_it_is(rig):
     (experiment,) = rig.experiments
     gap = replace(experiment, data=experiment.data.drop(experiment.data.index[1000:1020]))

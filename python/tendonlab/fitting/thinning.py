@@ -13,6 +13,8 @@ import pandas as pd
 
 from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of
+from tendonlab.simulation.catalog import InputInfo
+from tendonlab.simulation.prepare import is_held
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.system import System
 
@@ -37,10 +39,11 @@ class Thinned:
 
 def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
     """The dataset with as few samples as hold what the logs say, at least `RATE` a second. As it is where a controller
-    ticks, where a log has gaps, or where any smoothing would take motion away. `system`: default the dataset's own."""
+    is known, whose every tick counts; where nothing moves by an equation, so that there is no step to save; where a log
+    has gaps; or where any smoothing would take motion away. `system`: default the dataset's own."""
     system = dataset.system() if system is None else system
     steps = [float(np.median(np.diff(e.time))) for e in dataset if len(e.time) > 1]
-    if dataset.controller is not None or not steps or any(_has_gaps(e.time) for e in dataset):
+    if dataset.controller is not None or system.info.sampled or not steps or any(_has_gaps(e.time) for e in dataset):
         return dataset
     outputs = [s.name for s in system.info.outputs if s.name in dataset.signals]
     records = {name: [(e.time, _column(e, name)) for e in dataset if name in e.data.columns] for name in outputs}
@@ -48,7 +51,7 @@ def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
     factor = int(1.0 / (RATE * max(steps)) + 1e-6)
     while factor > 1:
         smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
-        calm = all(_is_calm(e, name, factor) for e in dataset for name in _inputs_of(e, system))
+        calm = all(_is_calm(e, given, factor) for e in dataset for given in _inputs_of(e, system))
         if calm and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
             signals = {
                 name: replace(dataset.signals[name], noise_sd=noise[name] * _gain(smooth[name]), resolution=None)
@@ -91,10 +94,10 @@ def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:
     return bool(len(removed)) and float(np.sqrt(np.mean(np.square(removed)))) < LOST * noise
 
 
-def _is_calm(experiment: Experiment, name: str, factor: int) -> bool:
+def _is_calm(experiment: Experiment, given: InputInfo, factor: int) -> bool:
     """Whether next to nothing of an input is lost between its means."""
-    values = _column(experiment, name)
-    means = np.interp(experiment.time, *_middles(experiment.time[::factor], _means(experiment, name, factor)))
+    values = _column(experiment, given.name)
+    means = np.interp(experiment.time, *_middles(experiment.time[::factor], _means(experiment, given, factor)))
     return float(np.sqrt(np.mean(np.square(values - means)))) <= SHAKES * float(np.sqrt(np.mean(np.square(values))))
 
 
@@ -110,28 +113,27 @@ def _gain(smooth: Sequence[Thinned]) -> float:
 def _thin(experiment: Experiment, system: System, outputs: Sequence[str], factor: int) -> Experiment:
     """The experiment at every `factor`-th sample."""
     time = experiment.time[::factor]
-    inputs = _inputs_of(experiment, system)
+    inputs = {given.name: given for given in _inputs_of(experiment, system)}
     columns = {}
     for name in experiment.data.columns:
         if name in outputs:
             columns[name] = local_parabolas(experiment.time, _column(experiment, name), factor).values
         elif name in inputs:
-            columns[name] = _means(experiment, name, factor)
+            columns[name] = _means(experiment, inputs[name], factor)
         else:
             columns[name] = _column(experiment, name)[::factor]
     data = pd.DataFrame(columns, index=pd.Index(time, name=experiment.data.index.name))
     return replace(experiment, data=data, holds={**experiment.holds, **dict.fromkeys(inputs, True)}, averaged=True)
 
 
-def _inputs_of(experiment: Experiment, system: System) -> list[str]:
-    return [s.name for s in system.info.inputs if s.name in experiment.data.columns]
+def _inputs_of(experiment: Experiment, system: System) -> list[InputInfo]:
+    return [given for given in system.info.inputs if given.name in experiment.data.columns]
 
 
-def _means(experiment: Experiment, name: str, factor: int) -> np.ndarray:
+def _means(experiment: Experiment, given: InputInfo, factor: int) -> np.ndarray:
     """Mean of an input from each sample that is kept to the next; it goes straight between samples unless held."""
-    time, values = experiment.time, _column(experiment, name)
-    held = experiment.holds.get(name, True)
-    over = values[:-1] if held else 0.5 * (values[1:] + values[:-1])
+    time, values = experiment.time, _column(experiment, given.name)
+    over = values[:-1] if is_held(experiment, given) else 0.5 * (values[1:] + values[:-1])
     gathered = np.concatenate([[0.0], np.cumsum(over * np.diff(time))])
     kept = np.append(np.arange(0, len(time), factor), len(time) - 1)
     length = np.diff(time[kept])

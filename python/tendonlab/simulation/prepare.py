@@ -147,11 +147,7 @@ def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_
     for k, given in enumerate(system.info.inputs):
         if given.name in data.columns:
             values = _finite(experiment, given.name)
-            held = experiment.holds.get(given.name, given.between == "hold")
-            between = (
-                averaged if experiment.averaged else hold if held else smoothed if given.between == "smooth" else linear
-            )
-            signals.append(between(time, values))
+            signals.append(_between(experiment, given)(time, values))
         elif given.required and given.replaced_by not in data.columns and not (k == 0 and replay.kind == "controller"):
             raise DatasetError(
                 f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it"
@@ -161,11 +157,16 @@ def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_
     return signals
 
 
+def is_held(experiment: Experiment, given: InputInfo) -> bool:
+    """Whether an input keeps each value until the next sample."""
+    return experiment.holds.get(given.name, given.between == "hold")
+
+
 def _between(experiment: Experiment, given: InputInfo) -> Callable[[np.ndarray, np.ndarray], _core.Signal]:
     """How an input goes from sample to sample."""
     if experiment.averaged:
         return averaged
-    if experiment.holds.get(given.name, given.between == "hold"):
+    if is_held(experiment, given):
         return hold
     return smoothed if given.between == "smooth" else linear
 
