@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from tendonlab._core import Free
-from tendonlab.fitting.uncertainty import informed, uncertainty
+from tendonlab.fitting.uncertainty import _correlation, informed, uncertainty
 
 MEAN = Free(name="joint_coulomb", index=0, log=False, scale=1.0, start=0.0)
 BLOCKS, LENGTH = 400, 25
@@ -106,3 +106,9 @@ def test_informed_is_what_narrows_its_prior() -> None:
     jacobian = np.zeros((50, 5))
     jacobian[:, [0, 2, 3, 4]] = [1.0, 1e-6, 1e-3, 1.0]
     assert informed([jacobian, jacobian], frees).tolist() == [True, False, True, True, False]
+
+
+def test_what_has_no_variance_is_correlated_with_nothing() -> None:
+    """Derivatives of 1e160 leave variances below what doubles hold: 0 in the table, and no overflow."""
+    assert _correlation(np.array([[1e-320, 1e-10], [1e-10, 4.0]])).tolist() == [[1.0, 0.0], [0.0, 1.0]]
+    assert _correlation(np.array([[1.0, 1.0], [1.0, 4.0]])) == pytest.approx(np.array([[1.0, 0.5], [0.5, 1.0]]))

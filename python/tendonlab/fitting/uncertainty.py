@@ -63,9 +63,18 @@ def uncertainty(
     sd[inside], half[inside] = _spread(covariances)
     correlations = np.eye(len(free))
     last, _ = covariances[min(1, len(covariances) - 1)]
-    scale = np.sqrt(np.maximum(np.diag(last), 1e-300))
-    correlations[np.ix_(inside, inside)] = last / np.outer(scale, scale)
+    correlations[np.ix_(inside, inside)] = _correlation(last)
     return _intervals(free, x, sd, half, correlations)
+
+
+def _correlation(covariance: np.ndarray) -> np.ndarray:
+    """Of each pair; 0 with what has no variance that doubles resolve."""
+    variance = np.diag(covariance)
+    spread = variance > 1e-300
+    scale = np.sqrt(np.where(spread, variance, 1.0))
+    found = np.where(np.outer(spread, spread), covariance / np.outer(scale, scale), 0.0)
+    np.fill_diagonal(found, 1.0)
+    return found
 
 
 def _covariances(
