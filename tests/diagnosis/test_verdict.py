@@ -40,6 +40,12 @@ def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tune
     assert decide((), (), shrunk).verdict == "parameters_only"
 
 
+@pytest.mark.parametrize("repeated", [False, True])
+def test_a_simulator_without_any_error_has_no_gap(repeated: bool) -> None:
+    levels = Levels(nominal=0.0, tuned=0.0, refitted=0.0, explained=None, repeated=repeated)
+    assert decide((), (), levels).verdict == "no_gap"
+
+
 def test_where_runs_repeat_they_decide_and_not_the_plain_floor() -> None:
     assert nothing_selected(refitted=1e6, repeated=True, tuned=1.1).verdict == "parameters_only"
     assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"

@@ -121,6 +121,18 @@ def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
     assert diagnosis.sentence == expected[diagnosis.verdict]
 
 
+def test_no_gap_above_the_floor_is_not_said_to_lie_on_it(with_effect: Diagnosis) -> None:
+    probability = dict.fromkeys(with_effect.verdict_probability, 0.0) | {"no_gap": 0.8}
+    nothing = replace(with_effect, verdict="no_gap", selected=(), verdict_probability=probability)
+
+    def gap(floors: float) -> dict[str, float]:
+        return {"noise_floor": 1e-4, "nominal": floors * 1e-4, "refitted": floors * 1e-4, "with_effect": floors * 1e-4}
+
+    near, above = {"joint_angle": gap(1.05)}, {"joint_angle": gap(1.3), "torque": gap(1.1)}
+    assert "predicts to the noise floor" in replace(nothing, gap=near).sentence
+    assert "errs by 1.2 times the noise floor, and neither tuning nor" in replace(nothing, gap=above).sentence
+
+
 def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> None:
     nothing = {"from_nominal": None, "from_refitted": None}
     both = replace(with_effect, selected=("joint:stribeck", "joint:presliding"), calibrated=True, shrinkage=nothing)

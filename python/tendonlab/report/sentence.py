@@ -10,6 +10,7 @@ from tendonlab.report.words import capital, phrases
 if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
 
+ON_FLOOR = 1.1  # noise floors of held-out error that read as the floor itself
 _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five"}
 
 
@@ -63,8 +64,15 @@ def _data_fault(diagnosis: Diagnosis) -> str:
     return f"The logs cannot be right{detail}. Nothing is said about effects."
 
 
-def _no_gap(_: Diagnosis) -> str:
-    return "There is no gap to explain: the simulator as it stands predicts to the noise floor."
+def _no_gap(diagnosis: Diagnosis) -> str:
+    squares = [(error["nominal"] / error["noise_floor"]) ** 2 for error in diagnosis.gap.values()]
+    floors = (sum(squares) / len(squares)) ** 0.5 if squares else 0.0
+    if floors < ON_FLOOR:
+        return "There is no gap to explain: the simulator as it stands predicts to the noise floor."
+    return (
+        f"No gap can be shown: the simulator as it stands errs by {floors:.2g} times the noise floor, and neither "
+        "tuning nor an effect of the library lowers that reliably."
+    )
 
 
 def _parameters_only(diagnosis: Diagnosis) -> str:

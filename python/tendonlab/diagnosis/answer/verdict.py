@@ -47,7 +47,8 @@ class Verdict:
 def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> Verdict:
     """The verdict on the effects `selected` in these `rounds`, and its probabilities."""
     after = levels.tuned if levels.repeated else levels.refitted
-    gained = 1.0 - after / levels.nominal - MATTERS  # by tuning, beyond what is too little to matter
+    # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
+    gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - MATTERS
     room = NEAR_FLOOR - levels.tuned if levels.repeated else min(SOFT, FAR - levels.refitted)
     at_floor = levels.nominal < NO_GAP or (gained < 0 < room and not selected)
     explained = levels.explained or 0.0
