@@ -116,3 +116,11 @@ def test_no_output_is_blamed_where_the_lags_of_another_scatter_as_much() -> None
     late = 1e-3 * np.array([[20.0, -37.0, -11.0, 28.0, 49.0], [5.0, -38.0, 4.0, 5.0, 51.0]])
     assert not any(f.blocks for f in findings(late.tolist(), sd=1e-4))
     assert any(f.blocks for f in findings(late[1:].tolist(), sd=1e-4))
+
+
+@pytest.mark.parametrize(("scatters", "noted"), [(2.0, False), (2.9, True)])
+def test_a_lag_of_all_experiments_must_exceed_their_scatter(scatters: float, noted: bool) -> None:
+    """The mean of five experiments that scatter by s is known to s/√5; five times this, 2.2 s, make it sure."""
+    spread = 0.002 * np.array([-1.5, -0.6745, 0.0, 0.6745, 1.5])
+    found = findings([(0.002 * scatters + spread).tolist()], sd=1e-6)
+    assert [f.experiment for f in found] == ([None] if noted else [])

@@ -148,3 +148,13 @@ def test_conditions_that_differ_are_evaluated_apart(tmp_path: Path) -> None:
     index = [p.name for p in of.system.info.parameters].index("gravity_torque")
     (nudged,) = of.evaluate(of.along(twice), len(run), parameter=index, nudge=0.1)
     np.testing.assert_allclose(nudged - left, np.where(run == 0, 0.0, 0.1 * np.tile(np.sin(q), 2)), atol=1e-9)
+
+
+def test_without_inputs_the_size_of_an_equation_is_what_it_leaves(equation: Equation) -> None:
+    """And 1 where nothing is left either: a joint at rest where it hangs."""
+    logs = exact(np.zeros(len(TIME)))
+    found = terms(equation, logs)
+    assert found.size == pytest.approx([rms(found.residual[0])])
+    assert rms(found.residual[0]) > 0.1
+    still = replace(logs, moving={"joint_angle": np.zeros((3, len(TIME)))})
+    assert terms(equation, still).size == pytest.approx([1.0])

@@ -26,3 +26,20 @@ def test_a_corner_is_none() -> None:
     bounced = 7.0 - 2.0 * np.abs(TIME - 3.5) + NOISE
     assert not outliers(stopped).any()
     assert not outliers(bounced).any()
+
+
+def test_a_record_of_fewer_than_three_windows_has_none() -> None:
+    """21 samples: with fewer the median of seven says nothing of the rest."""
+    line = np.linspace(0.0, 1.0, 40)
+    line[10] += 5.0
+    assert np.flatnonzero(outliers(line)).tolist() == [10]
+    assert not outliers(line[:20]).any()
+
+
+def test_what_is_frequent_belongs_to_the_signal() -> None:
+    """At most 3 % of a record are outliers."""
+    few, many = CHIRP + NOISE, CHIRP + NOISE
+    few[20:960:34] += 0.5  # 28 of 1000
+    many[20:960:28] += 0.5  # 34
+    assert outliers(few).sum() == 28
+    assert not outliers(many).any()

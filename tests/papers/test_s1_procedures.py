@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.errors import DatasetError
 from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
 from tendonlab.papers import s1
 
@@ -150,3 +151,26 @@ def test_feed_forward_lets_the_hand_feel_what_is_displayed() -> None:
         errors.append(np.sqrt(np.mean(np.sum((felt - shown) ** 2, axis=1))))
         assert found["depth"].max() < 0.02
     assert errors[1] < 0.6 * errors[0]
+
+
+@pytest.mark.parametrize(
+    ("speed", "torque"),
+    [
+        ([1.0, -2.0, 3.0], [0.1, -0.2]),  # one torque is missing
+        ([1.0, 2.0], [0.1, 0.2]),
+        ([1.0, -1.0, 1.0, -1.0], [0.1, -0.1, 0.1, -0.1]),
+        ([1.0, 0.0, 2.0], [0.1, 0.0, 0.2]),
+    ],
+    ids=["a torque short", "two speeds", "one magnitude", "at rest"],
+)
+def test_speeds_that_tell_no_friction_are_refused(speed: list[float], torque: list[float]) -> None:
+    with pytest.raises(DatasetError, match="expected three or more, not 0, of different magnitude"):
+        s1.fit_motor_friction(speed, torque)
+
+
+def test_three_speeds_with_an_odd_torque_state_the_covariance_of_least_squares() -> None:
+    """Torques 1 + 2 v ± d at v = 1, 2, 3: residuals d/6 times (1, -2, 1), one degree of freedom left."""
+    fit = s1.fit_motor_friction([1.0, 2.0, 3.0], [3.0 + 0.06, 5.0 - 0.12, 7.0 + 0.06])
+    assert (fit.constant, fit.viscous) == pytest.approx((1.0, 2.0))
+    variance = 0.06**2 * 6.0
+    assert fit.sd == pytest.approx(np.sqrt(variance * np.array([14.0, 3.0]) / 6.0))  # of the normal matrix 3, 6, 14

@@ -77,6 +77,9 @@ def test_bad_markers_are_named() -> None:
         MarkerSpline(markers[[0, 1, 2, 3, 1, 5]])
     with pytest.raises(DatasetError, match="at least 4 finite rows"):
         MarkerSpline(markers[:3])
+    for points in (markers[:, 0], markers[:, :1], np.tile(markers, 2), markers[None]):
+        with pytest.raises(DatasetError, match="rows of x, y or x, y, z"):
+            MarkerSpline(points)
     with pytest.raises(ParameterError, match="rule = 'simpson'"):
         MarkerSpline(markers).wrap_angle(rule="simpson")
     with pytest.raises(ParameterError, match="smoothing = -1"):

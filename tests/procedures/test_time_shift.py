@@ -75,6 +75,16 @@ def test_equal_numbers_of_jumps_are_paired_in_order(waits: list[tuple[int, int]]
     assert found["shift"].to_numpy() * RATE == pytest.approx(theirs + late - ours, abs=1e-6)
 
 
+def test_jumps_of_one_sense_are_paired_however_late() -> None:
+    """Over nearly the whole record, although a jump of the other sense is nearer."""
+    long = np.arange(0.0, 2000.0, 0.1)
+    ours, theirs = (
+        sum(h * (at < long) for at, h in jumps_at) for jumps_at in ([(1.05, 40.0)], [(2.05, -40.0), (1990.05, 40.0)])
+    )
+    found = time_shift(long, ours, theirs, threshold=15.0, within_time=0.2)
+    assert found["shift"].to_numpy() == pytest.approx([1989.0], abs=0.01)
+
+
 def test_what_has_no_partner_stays_alone() -> None:
     ours, theirs = force((10.0, 20.0), (40.0, -40.0)), force((11.0, 30.0), (40.0, 40.0))
     assert time_shift(TIME, ours, theirs, threshold=15.0)["shift"].to_numpy() == pytest.approx([1.0], abs=0.01)
@@ -95,6 +105,8 @@ def test_bad_input_is_named() -> None:
         time_shift(TIME, TIME, TIME[1:], threshold=1.0)
     with pytest.raises(ParameterError, match=r"within_time = 0.001: expected a value in"):
         jumps(TIME, TIME, threshold=1.0, within_time=0.001)
+    with pytest.raises(ParameterError, match=r"within_time = 46.0: expected a value in"):
+        jumps(TIME + 100.0, TIME, threshold=1.0, within_time=46.0)
     with pytest.raises(ParameterError, match=r"longest = -1.0: expected a value in"):
         time_shift(TIME, TIME, TIME, threshold=1.0, longest=-1.0)
     with pytest.raises(ParameterError, match=r"expected even sampling"):
