@@ -120,6 +120,7 @@ def test_capstan() -> None:
     of = given("capstan_lambda")
     found = [capstan_tension(of["T_in"], of["mu"], of["theta"], direction=sign) for sign in of["lam"]]
     require("capstan_lambda", "T_out", found)
+    assert capstan_tension(50.0, 0.1, 2.0) == pytest.approx(50.0 * np.exp(-0.2))  # what the sheath pulls, unless told
 
 
 def test_slack_limit() -> None:

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from examples.bowden_pair import EXAMPLE
 from integrate.rig import FRICTION, NOMINAL, joint, pair, run
+from tendonlab.simulation.system import System
 
 T = np.linspace(0.0, 1.0, 501)
 
@@ -56,6 +58,22 @@ def test_delay_of_a_sensor_shifts_its_reading_alone():
     assert late["motor_angle"][15:] == pytest.approx(plain["motor_angle"][:-15], abs=1e-12)
     assert np.all(late["motor_angle"][:15] == 0.0)  # before the start it read what it reads at the start
     assert np.array_equal(late["joint_angle"], plain["joint_angle"])
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.0004, 0.0137, 0.1003])
+def test_a_late_sensor_of_a_system_without_motion_goes_straight_between_samples(delay):
+    """A system that answers at once: its reading is that of the samples before, from the first one on."""
+    effect, name = "sensor.output_torque:delay", "sensor.output_torque_delay"
+    info = System(kind="bowden_pair", parameters=EXAMPLE.parameters, effects=("sheath:capstan",))
+    late = info.with_effects({effect: {name: delay}})
+    time = np.linspace(0.0, 1.0, len(EXAMPLE.inputs["input_torque"]))
+    found = run(late, time, EXAMPLE.inputs, by=[name], keep_zero=True)
+    plain = run(info, time, EXAMPLE.inputs)["output_torque"]
+    assert found["output_torque"] == pytest.approx(np.interp(time - delay, time, plain), rel=1e-12)
+    step = 1e-7  # the reading is straight between samples: its rate is that of the samples around
+    slope = np.interp(time - delay - step, time, plain) - np.interp(time - delay, time, plain)
+    inside = time > delay + 1e-4
+    assert found.gradient[name][0][inside] == pytest.approx(slope[inside] / step, rel=1e-5, abs=1e-6)
 
 
 def test_delay_of_a_sensor_between_samples():

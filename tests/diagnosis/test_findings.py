@@ -1,0 +1,78 @@
+"""The list of candidates in the report: which trial speaks for an effect, and in which order they stand."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tendonlab.diagnosis.answer import findings as answer
+from tendonlab.diagnosis.answer.findings import _numbers, findings
+from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.errors import NumericalError
+
+
+def trial(effect: str, gain: float, *others: str) -> Trial:
+    fitted: Any = SimpleNamespace(added=(*others, effect))
+    return Trial(effect, fitted, gain, 0.5 * gain, 0.0)
+
+
+def screened(effect: str, gain: float) -> Any:
+    return SimpleNamespace(effect=effect, gain=gain, visibility=7.0)
+
+
+def contest(trials: list[Trial], accepted: Trial | None, *seen: Any) -> Any:
+    return SimpleNamespace(trials=trials, accepted=accepted, screened=seen)
+
+
+@pytest.fixture
+def listed(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.setattr(answer, "_numbers", lambda *_: {})
+
+    def of(rounds: list[Any], probability: dict[str, float]) -> Any:
+        nothing: Any = None
+        search: Any = SimpleNamespace(rounds=rounds)
+        return findings(nothing, search, probability, nothing, [], 0)
+
+    return of
+
+
+def test_candidates_are_listed_by_probability_and_then_by_what_they_gain(listed: Any) -> None:
+    trials = [trial("joint:a", 90.0), trial("joint:b", 80.0), trial("motor:c", 50.0)]
+    seen = [screened("cable:d", 60.0), screened("cable:e", 70.0), screened("joint:a", 1.0)]
+    rows = listed([contest(trials, trials[0], *seen)], {"joint:b": 0.6, "joint:a": 0.3})
+    assert [(r.element, r.effect, r.probability) for r in rows] == [
+        ("joint", "b", 0.6), ("joint", "a", 0.3), ("cable", "e", 0.0), ("cable", "d", 0.0), ("motor", "c", 0.0),
+    ]  # fmt: skip
+    assert rows[2].extra == {"screened_gain": 70.0, "visibility": 7.0}
+    assert (rows[1].extra["screened_gain"], rows[1].extra["evidence_gain"]) == (1.0, 90.0)
+
+
+def test_the_round_that_accepted_an_effect_speaks_for_it_else_the_first(listed: Any) -> None:
+    """Its companions in that round are named; the first screen counts."""
+    first = contest([trial("a", 10.0, "p"), trial("b", 20.0, "p")], None, screened("a", 1.0))
+    won = trial("b", 40.0, "p", "q")
+    second = contest([trial("a", 30.0, "q"), won], won, screened("a", 2.0))
+    a, b = sorted(listed([first, second], {}), key=lambda row: row.effect)
+    assert (a.extra["evidence_gain"], a.extra["beside"], a.extra["screened_gain"]) == (10.0, ["p"], 1.0)
+    assert (b.extra["evidence_gain"], b.extra["left_out_gain"], b.extra["beside"]) == (40.0, 20.0, ["p", "q"])
+
+
+def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: Any) -> None:
+        raise NumericalError("no")
+
+    monkeypatch.setattr(answer.heldout, "models", fails)
+    system = SimpleNamespace(
+        info=SimpleNamespace(
+            effect=lambda _: SimpleNamespace(parameters=("joint_level", "joint_shape")),
+            parameter=lambda name: SimpleNamespace(own=name.removeprefix("joint_")),
+        ),
+        unit=lambda _: "N*m",
+    )
+    fitted: Any = SimpleNamespace(
+        system=system, free=[SimpleNamespace(name="joint_level")], value=lambda _: (0.3, (0.2, 0.5))
+    )
+    fitter: Any = SimpleNamespace(case=None, floor=None)
+    refitted: Any = None
+    found = _numbers(fitter, Trial("joint:a", fitted, 9.0, 9.0, 0.0), refitted, [], 0)
+    assert found == {"parameters": {"level": {"value": 0.3, "ci95": [0.2, 0.5], "unit": "N*m"}}}

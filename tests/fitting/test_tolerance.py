@@ -1,0 +1,50 @@
+"""The stepper's tolerance of a case: the loosest at which its error is a tenth of the noise."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.errors import NumericalError
+from tendonlab.fitting import case as cases
+from tendonlab.fitting.case import TOLERANCES, fine_enough
+
+
+@pytest.fixture
+def errs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two outputs whose errors are the tolerance, and three times the tolerance."""
+    wave = np.where(np.arange(100) % 2, 1.0, -1.0)
+    monkeypatch.setattr(
+        cases, "replace", lambda case, tolerance: SimpleNamespace(**{**vars(case), "tolerance": tolerance})
+    )
+    monkeypatch.setattr(cases, "_outputs", lambda _, tolerance: [np.array([tolerance * wave, 3.0 * tolerance * wave])])
+
+
+def case(**more: Any) -> Any:
+    return SimpleNamespace(measured=[0, 2], **more)
+
+
+@pytest.mark.parametrize("wanted", TOLERANCES)
+def test_the_error_of_the_worst_output_stays_below_a_tenth_of_its_noise(errs: None, wanted: float) -> None:
+    noise = np.array([1.0, np.nan, 31.0 * wanted])
+    assert fine_enough(case(), noise).tolerance == wanted
+
+
+def test_where_no_tolerance_is_fine_enough_the_finest_is_taken(errs: None) -> None:
+    assert fine_enough(case(), np.full(3, 1e-30)).tolerance == min(TOLERANCES)
+    assert list(TOLERANCES) == sorted(TOLERANCES, reverse=True)
+
+
+def test_the_reference_is_a_hundredth_of_the_finest_or_what_the_inputs_allow(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = []
+
+    def outputs(_: Any, tolerance: float) -> list[np.ndarray]:
+        tried.append(tolerance)
+        if tolerance < min(TOLERANCES):
+            raise NumericalError("the step fell to 0")
+        return []
+
+    monkeypatch.setattr(cases, "_outputs", outputs)
+    cases._finest(case())
+    assert tried == pytest.approx([TOLERANCES[-1] / 100, TOLERANCES[-1] / 10, TOLERANCES[-1]])
