@@ -17,7 +17,7 @@ from tendonlab.identification.result import Identification
 from tendonlab.papers.s4.dataset import JITTER
 from tendonlab.papers.s4.drive import Drive
 from tendonlab.papers.s4.library import simulate
-from tendonlab.papers.s4.rig import measured
+from tendonlab.papers.s4.rig import NOISE, measured
 from tendonlab.papers.s4.tensions import ANGLES, fit_tensions
 from tendonlab.papers.s4.twin import TENSIONS
 from tendonlab.procedures import wavelet_denoise
@@ -27,12 +27,13 @@ from tendonlab.simulation.system import System
 
 LEVEL = 6  # of the wavelets: details of up to 64 samples, 64 ms on the rig, less than joint 1 dwells at a reversal
 RUN_IN = 0.1  # s, in which the bristles find their state
+MEAN = 5  # samples: a tenth of the time that joint 1 takes at a reversal until its contacts slip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Treatment:
     """How a reading becomes a fit from `start`, of the parameters `free`: both angles denoised, the record cut at
-    `since`, s, and its tensions compared after the bristles have run in."""
+    `since`, s, every five samples averaged, and the tensions compared after the bristles have run in."""
 
     start: System
     free: tuple[str, ...]
@@ -43,9 +44,17 @@ class Treatment:
         seen = read.copy()
         for angle in ANGLES:
             seen[angle] = wavelet_denoise(seen[angle].to_numpy(), level=LEVEL)
-        seen = seen[seen.index >= self.since]
+        seen = _means(seen[seen.index >= self.since])
         seen.loc[seen.index < self.since + RUN_IN, list(TENSIONS)] = np.nan
-        return fit_tensions(seen, self.start, free=self.free)
+        return fit_tensions(seen, self.start, free=self.free, noise=NOISE / np.sqrt(MEAN))
+
+
+def _means(of: pd.DataFrame) -> pd.DataFrame:
+    """Instants and columns, averaged over every MEAN samples; fewer at the end are left out."""
+    full = len(of) // MEAN * MEAN
+    whole_blocks = of.reset_index().to_numpy()[:full].reshape(-1, MEAN, 1 + of.shape[1])
+    time, *columns = whole_blocks.mean(axis=1).T
+    return pd.DataFrame(dict(zip(of.columns, columns, strict=True)), index=pd.Index(time, name=of.index.name))
 
 
 def fit_rounded(
