@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import re
 import shlex
+import shutil
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +21,21 @@ from sealed_cases import Drawn
 from tendonlab.blind import commands, draw, drawing, run, runner, score
 from tendonlab.blind.commands import add_parser
 from tendonlab.blind.drawing import plan
-from tendonlab.blind.rig import EFFECTS
+from tendonlab.blind.rig import EFFECTS, draw_rig
 from tendonlab.blind.runner import command
 from tendonlab.blind.twin import make_twin
 
 ROOT = Path(__file__).parents[2]
 BUNDLED = ROOT / "data" / "two_inertia"
 PAGE = ROOT / "docs" / "blind.md"
+# of the cases of `drawn`, seed 15: the stated numbers' hash, and the last row of run 10: t, u, qm, ql, fc(, qr)
+STATED = "1eea9a0e0aac3adf"
+LAST_ROWS = {
+    "case-001": (0.238, 0.1083890, 2.302889, 0.2180170, 0.7040),
+    "case-002": (0.238, 0.0515471, 3.824981, 0.3731408, 0.4340, 3.9536219),
+    "case-003": (0.238, 0.0801274, -0.695660, -0.0824515, 0.4900),
+    "case-004": (0.238, -0.0271821, -2.530685, -0.2462039, -0.4340),
+}
 
 
 def read(path: Path) -> dict:
@@ -79,11 +90,42 @@ def test_truth_is_drawn_beside_the_cases_unless_told_where(tmp_path: Path):
 
 
 def test_every_effect_has_its_turn():
-    kinds = plan(1, 40)
-    assert {effect for kind, effect in kinds if kind == "effect"} == set(EFFECTS)
-    assert [kind for kind, _ in kinds].count("none") == 6
-    assert [kind for kind, _ in kinds].count("parameters_only") == 6
-    assert kinds == plan(1, 40) != plan(2, 40)
+    cases = plan(1, 40)
+    assert {case.effect for case in cases if case.kind == "effect"} == set(EFFECTS)
+    assert [case.kind for case in cases].count("none") == 6
+    assert [case.kind for case in cases].count("parameters_only") == 6
+    assert cases == plan(1, 40) != plan(2, 40)
+
+
+def test_repeats_are_a_share_of_the_cases_and_change_nothing_else():
+    cases = plan(1, 40, repeats=0.25)
+    assert [case.has_repeats for case in cases].count(True) == 10
+    assert [(case.kind, case.effect) for case in cases] == [(case.kind, case.effect) for case in plan(1, 40)]
+    assert not any(case.has_repeats for case in plan(1, 40, repeats=0.0))
+
+
+def test_other_motions_of_the_same_kind_take_the_places_of_the_repeats():
+    pair = [
+        draw_rig(np.random.default_rng(4), effect="", kind="none", num_samples=200, has_repeats=has_repeats)
+        for has_repeats in (True, False)
+    ]
+    repeated, single = (rig.experiments for rig in pair)
+    places = [i for i, run in enumerate(repeated) if run.repeat]
+    assert len(places) == 3
+    assert [run.repeat for run in single] == [None] * 10
+    moved = [not np.array_equal(a.reference, b.reference) for a, b in zip(repeated, single, strict=True)]
+    assert [i for i, other in enumerate(moved) if other] == places[1:]
+    assert not np.array_equal(single[places[1]].reference, single[places[2]].reference)
+    assert replace(pair[0], experiments=()) == replace(pair[1], experiments=())
+
+
+def test_two_inertia_cases_of_a_seed_stay_the_same(drawn: Drawn):
+    """The stated numbers have five digits, so they are equal on every machine; the logs may differ in their last."""
+    stated = b"".join((case / "dataset.toml").read_bytes() for case in sorted(drawn.cases.iterdir()))
+    assert hashlib.sha256(stated).hexdigest().startswith(STATED)
+    for name, last in LAST_ROWS.items():
+        row = pd.read_csv(drawn.cases / name / "run-10.csv").iloc[-1]
+        np.testing.assert_allclose(row, last, rtol=0, atol=2e-4)
 
 
 def test_twin_without_effect_states_the_truth(tmp_path: Path):
@@ -155,7 +197,40 @@ def test_failed_case_is_recorded(drawn: Drawn, tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(runner, "command", lambda case, out: [sys.executable, "-c", script])
     verdicts = json.loads(run(drawn.cases, tmp_path, progress=False).read_text())["reports"]
     assert verdicts["case-001"] == {"verdict": "failed", "message": "exit 1: out of luck"}
-    assert score(drawn.sealed, tmp_path).summary["top1"] == 0.0
+    summary = score(drawn.sealed, tmp_path).summary
+    assert summary["top1"] == summary["verdict right"] == summary["median shrinkage"] == 0.0
+    assert summary["failed"] == 4
+    alarms = [summary[f"false alarms on {truth}"] for truth in ("no_gap", "parameters_only")]
+    assert {1.0} == {alarm for alarm in alarms if alarm == alarm}
+
+
+def test_case_that_takes_too_long_has_failed(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(runner, "command", lambda case, out: [sys.executable, "-c", "import time; time.sleep(60)"])
+    verdicts = json.loads(run(drawn.cases, tmp_path, jobs=4, timeout=0.2, progress=False).read_text())["reports"]
+    assert verdicts["case-001"] == {"verdict": "failed", "message": "no verdict within 0.2 s"}
+
+
+def test_drawn_case_that_was_never_run_counts_as_wrong(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    fake_reports(monkeypatch, drawn.sealed, right=True)
+    shutil.copytree(drawn.cases, tmp_path / "cases")
+    shutil.rmtree(tmp_path / "cases" / "case-001")
+    run(tmp_path / "cases", tmp_path / "reports", progress=False)
+    summary = score(drawn.sealed, tmp_path / "reports").summary
+    assert summary["cases"] == 4
+    assert summary["failed"] == 1
+    assert summary["verdict right"] == 0.75
+
+
+def test_score_keeps_cases_with_and_without_repeats_apart(
+    drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    fake_reports(monkeypatch, drawn.sealed, right=True)
+    run(drawn.cases, tmp_path / "reports", progress=False)
+    shutil.copytree(drawn.sealed, tmp_path / "truth")
+    truth = tmp_path / "truth" / "case-001.toml"
+    truth.write_text(truth.read_text().replace("repeats = true", "repeats = false"))
+    parts = score(tmp_path / "truth", tmp_path / "reports").parts
+    assert parts.loc["cases"].to_dict() == {"with repeats": 3, "without repeats": 1}
 
 
 def test_run_needs_cases(tmp_path: Path):
@@ -185,8 +260,9 @@ def test_command_line_scores(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.M
 def test_flow_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
     """Its commands as written, on cases fewer and shorter than it draws, by a diagnosis that knows the answers."""
 
-    def draw_less(seed: int, count: int, out: Path, *, sealed: Path | None, jobs: int) -> Path:
-        return draw(seed, min(count, 2), out, sealed=sealed, jobs=1, num_samples=120, step=2e-4, progress=False)
+    def draw_less(seed: int, count: int, out: Path, *, sealed: Path | None, repeats: float, jobs: int) -> Path:
+        shorter = {"num_samples": 120, "step": 2e-4, "progress": False}
+        return draw(seed, min(count, 2), out, sealed=sealed, repeats=repeats, jobs=1, **shorter)
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(drawing, "draw", draw_less)

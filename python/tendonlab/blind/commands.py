@@ -33,12 +33,16 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     )
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
+    text = "share of the cases that repeat an experiment, 0 to 1 (default 1)"
+    drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
     drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
 
     text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
     running = _verb(verbs, "run", _run, text)
     running.add_argument("cases", type=Path, metavar="CASES")
     running.add_argument("--out", type=Path, required=True, help="folder of the reports and verdicts.json")
+    text = "time limit of one diagnosis; a case that exceeds the limit counts as failed (default 1800)"
+    running.add_argument("--timeout", type=float, default=1800.0, metavar="SECONDS", help=text)
     running.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
 
     scoring = _verb(verbs, "score", _score, "open the truth and compare")
@@ -57,14 +61,14 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
-    print(draw(given.seed, given.count, given.out, sealed=given.sealed, jobs=given.jobs))
+    print(draw(given.seed, given.count, given.out, sealed=given.sealed, repeats=given.repeats, jobs=given.jobs))
     return 0
 
 
 def _run(given: argparse.Namespace) -> int:
     from .runner import run
 
-    print(run(given.cases, given.out, jobs=given.jobs))
+    print(run(given.cases, given.out, jobs=given.jobs, timeout=given.timeout))
     return 0
 
 

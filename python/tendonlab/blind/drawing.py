@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -26,6 +27,7 @@ def draw(
     out: Path | str,
     *,
     sealed: Path | str | None = None,
+    repeats: float = 1.0,
     jobs: int = 2,
     num_samples: int = NUM_SAMPLES,
     step: float = FINE_STEP,
@@ -34,20 +36,19 @@ def draw(
     """Draw `count` cases into `out`/cases and return `out`; about 70 % lack one effect, 15 % nothing, 15 % have wrong
     parameters only.
 
+    The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
-    The same seed gives the same cases whatever `jobs`. Raises ValueError if count < 1, FileExistsError if one of the
-    two folders exists.
+    The same seed gives the same cases whatever `jobs`. Raises ValueError if count < 1 or `repeats` is no share,
+    FileExistsError if one of the two folders exists.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
-    for folder in (cases, sealed):
-        if folder.exists():
-            raise FileExistsError(f"{folder} exists: expected a new folder to draw into")
-    for folder in (cases, sealed):
-        folder.mkdir(parents=True)
-    kinds = plan(seed, count)
-    batches = [list(enumerate(kinds))[i : i + BATCH] for i in range(0, count, BATCH)]
+    if not 0.0 <= repeats <= 1.0:
+        raise ValueError(f"repeats = {repeats}: expected a share from 0 to 1")
+    _make_folders(cases, sealed)
+    wanted = list(enumerate(plan(seed, count, repeats=repeats)))
+    batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
     work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
     with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
         if jobs <= 1:
@@ -60,8 +61,28 @@ def draw(
     return Path(out)
 
 
-def plan(seed: int, count: int) -> list[tuple[str, str]]:
-    """(kind, effect) of every case, shuffled; effects go round in turn, so that all appear once `count` allows it."""
+def _make_folders(*folders: Path) -> None:
+    for folder in folders:
+        if folder.exists():
+            raise FileExistsError(f"{folder} exists: expected a new folder to draw into")
+    for folder in folders:
+        folder.mkdir(parents=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """What a case is to be: its kind, the effect that it lacks ("" for none), and whether it repeats an experiment."""
+
+    kind: str
+    effect: str
+    has_repeats: bool
+
+
+def plan(seed: int, count: int, *, repeats: float = 1.0) -> list[Wanted]:
+    """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
+
+    The draw of the repeats changes nothing else: the cases of a seed are the same with and without repeats.
+    """
     draw = np.random.default_rng([seed, 0])
     singles = max(1, round(0.7 * count))
     none = round(0.15 * count)
@@ -70,23 +91,27 @@ def plan(seed: int, count: int) -> list[tuple[str, str]]:
         order += [EFFECTS[i] for i in draw.permutation(len(EFFECTS))]
     kinds = [("effect", effect) for effect in order[:singles]] + [("none", "")] * none
     kinds += [("parameters_only", "")] * (count - len(kinds))
-    return [kinds[i] for i in draw.permutation(count)]
+    shuffled = [kinds[i] for i in draw.permutation(count)]
+    places = np.random.default_rng([seed, 0, 1]).permutation(count)[: round(repeats * count)]
+    repeated = set(places.tolist())
+    return [Wanted(kind=kind, effect=effect, has_repeats=i in repeated) for i, (kind, effect) in enumerate(shuffled)]
 
 
 def _draw_batch(
-    batch: Sequence[tuple[int, tuple[str, str]]], *, seed: int, cases: Path, sealed: Path, num_samples: int, step: float
+    batch: Sequence[tuple[int, Wanted]], *, seed: int, cases: Path, sealed: Path, num_samples: int, step: float
 ) -> int:
     settled: dict[int, tuple[Rig, Strength]] = {}
     redrawn: dict[int, list[str]] = {index: [] for index, _ in batch}
-    wanted = dict(batch)
-    while wanted:
+    open_cases = dict(batch)
+    while open_cases:
         rigs = {
-            i: _rig(i, kind, seed=seed, tries=len(redrawn[i]), num_samples=num_samples) for i, kind in wanted.items()
+            i: _rig(i, wanted, seed=seed, tries=len(redrawn[i]), num_samples=num_samples)
+            for i, wanted in open_cases.items()
         }
         for (i, rig), strength in zip(rigs.items(), tune(list(rigs.values())), strict=True):
             if rig.kind != "effect" or strength.met or (strength.limited and strength.gap_noise >= 1.0):
                 settled[i] = (rig, strength)
-                del wanted[i]
+                del open_cases[i]
             else:
                 redrawn[i].append(rig.effect)
     for i, run in zip(settled, record(*_columns(settled), step=step), strict=True):
@@ -101,8 +126,14 @@ def _columns(settled: dict[int, tuple[Rig, Strength]]) -> tuple[list[Rig], list[
     return [rig for rig, _ in settled.values()], [strength for _, strength in settled.values()]
 
 
-def _rig(index: int, kind: tuple[str, str], *, seed: int, tries: int, num_samples: int) -> Rig:
-    name, effect = kind
+def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int) -> Rig:
+    effect = wanted.effect
     if effect and tries >= MAX_TRIES:  # out of its reach on any of these rigs: another effect takes the place
         effect = EFFECTS[(EFFECTS.index(effect) + tries // MAX_TRIES) % len(EFFECTS)]
-    return draw_rig(np.random.default_rng([seed, index + 1, tries]), effect=effect, kind=name, num_samples=num_samples)
+    return draw_rig(
+        np.random.default_rng([seed, index + 1, tries]),
+        effect=effect,
+        kind=wanted.kind,
+        num_samples=num_samples,
+        has_repeats=wanted.has_repeats,
+    )

@@ -118,24 +118,34 @@ POOR: tuple[tuple[Shape, float, bool], ...] = (
 )
 
 
-def session(draw: Draw, *, excitation: str, sample_time: float, num_samples: int) -> list[Experiment]:
+def session(
+    draw: Draw, *, excitation: str, sample_time: float, num_samples: int, has_repeats: bool = True
+) -> list[Experiment]:
     """Ten experiments, "rich" or "poor", in the order recorded; one repeated at the start, in the middle and at the
-    end.
+    end. Without repeats, other motions of the same kind take the places of the second and third.
     """
     plans = RICH if excitation == "rich" else POOR
     time: Array = np.arange(num_samples, dtype=float) * sample_time
     repeated, train, test = plans[0], plans[1:5], plans[5:]
     order = [("train", p) for p in train] + [("test", p) for p in test]
     order = [order[i] for i in draw.permutation(len(order))]
-    again = _reference(repeated, time, draw)
+    fresh = draw.spawn(1)[0]  # a stream of its own: all else is drawn alike with and without repeats
+    first = _reference(repeated, time, draw)
+    others = [first if has_repeats else _reference(repeated, time, fresh) for _ in range(2)]
+    again, label = iter([first, *others]), "A" if has_repeats else None
     slots: list[tuple[str, str | None, Array, bool]] = []
     for i, (split, plan) in enumerate(order):
         if i in (0, 4):
-            slots.append(("train", "A", again, False))
+            slots.append(("train", label, next(again), False))
         slots.append((split, None, _reference(plan, time, draw), plan[2]))
-    slots.append(("train", "A", again, False))
+    slots.append(("train", label, next(again), False))
+    return _runs(slots, draw, seconds=num_samples * sample_time)
+
+
+def _runs(slots: list[tuple[str, str | None, Array, bool]], draw: Draw, *, seconds: float) -> list[Experiment]:
+    """The experiments of (split, repeat, reference, whether with payload) in turn, with breaks between them."""
     mass, start, runs = float(np.round(draw.uniform(0.12, 0.25), 2)), 0.0, []
-    for i, (split, label, reference, loaded) in enumerate(slots):
+    for i, (split, repeat, reference, loaded) in enumerate(slots):
         kg = mass if loaded else 0.0
         add = {"gravity_torque": kg * PAYLOAD_TORQUE, "joint_inertia": kg * PAYLOAD_INERTIA} if loaded else {}
         add = {name: float(f"{value:.6g}") for name, value in add.items()}
@@ -145,12 +155,12 @@ def session(draw: Draw, *, excitation: str, sample_time: float, num_samples: int
                 reference=reference,
                 start=start,
                 split=split,
-                repeat=label,
+                repeat=repeat,
                 payload=kg,
                 add=add,
             )
         )
-        start = float(np.round(start + num_samples * sample_time + draw.uniform(15, 60), 1))
+        start = float(np.round(start + seconds + draw.uniform(15, 60), 1))
     return runs
 
 

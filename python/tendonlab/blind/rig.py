@@ -88,12 +88,22 @@ class Rig:
         return self.effect.partition(":")[0]
 
     @property
+    def has_repeats(self) -> bool:
+        return any(experiment.repeat for experiment in self.experiments)
+
+    @property
     def num_samples(self) -> int:
         return self.experiments[0].reference.size
 
 
 def draw_rig(
-    draw: np.random.Generator, *, effect: str, kind: str, excitation: str | None = None, num_samples: int = NUM_SAMPLES
+    draw: np.random.Generator,
+    *,
+    effect: str,
+    kind: str,
+    excitation: str | None = None,
+    num_samples: int = NUM_SAMPLES,
+    has_repeats: bool = True,
 ) -> Rig:
     """Draw a rig of one kind around TYPICAL (parameters +-25 %); `excitation` None: drawn, rich twice as often as
     poor.
@@ -102,24 +112,24 @@ def draw_rig(
         name: value * (1.0 if name == "gear_ratio" else draw.uniform(0.75, 1.25)) for name, value in TYPICAL.items()
     }
     chosen = str(draw.choice(["rich", "rich", "poor"]))
-    ratio = truth["gear_ratio"]
-    inertia = truth["motor_inertia"] + truth["joint_inertia"] / ratio**2
-    bandwidth = draw.uniform(32.0, 45.0)
-    loop = {"kp": inertia * bandwidth**2, "kd": 1.4 * inertia * bandwidth, "limit": 0.8}
+    loop = _loop(truth, draw)
     needs_torque = effect.startswith("sensor.cable_torque") or effect == "actuation:gain_error"
     drops = bool(draw.random() < 0.2) and not needs_torque
     other, is_other = int(draw.integers(1, 3)), bool(draw.random() < 0.5)
     forms = FORMS.get(effect.partition(":")[2], ("documented",))
-    experiments = session(draw, excitation=excitation or chosen, sample_time=SAMPLE_TIME, num_samples=num_samples)
+    recorded = excitation or chosen
+    experiments = session(
+        draw, excitation=recorded, sample_time=SAMPLE_TIME, num_samples=num_samples, has_repeats=has_repeats
+    )
     return Rig(
         truth={name: float(f"{value:.5g}") for name, value in truth.items()},
         effect=effect,
         shape=_shape(draw),
         form=min(other, len(forms) - 1) if is_other else 0,
         kind=kind,
-        excitation=excitation or chosen,
+        excitation=recorded,
         experiments=tuple(experiments),
-        loop={name: float(f"{value:.4g}") for name, value in loop.items()},
+        loop=loop,
         has_controller=bool(draw.random() < 0.5),
         outputs=OUTPUTS[:2] if drops else OUTPUTS,
         noise=float(np.exp(draw.uniform(np.log(0.7), np.log(1.8)))),
@@ -127,6 +137,13 @@ def draw_rig(
         seed=int(draw.integers(2**31)),
         num_settle=min(NUM_SETTLE, num_samples),  # short records, as tests make them, settle shortly
     )
+
+
+def _loop(truth: dict[str, float], draw: np.random.Generator) -> dict[str, float]:
+    inertia = truth["motor_inertia"] + truth["joint_inertia"] / truth["gear_ratio"] ** 2
+    bandwidth = draw.uniform(32.0, 45.0)
+    loop = {"kp": inertia * bandwidth**2, "kd": 1.4 * inertia * bandwidth, "limit": 0.8}
+    return {name: float(f"{value:.4g}") for name, value in loop.items()}
 
 
 def _shape(draw: np.random.Generator) -> dict[str, float]:

@@ -24,10 +24,11 @@ def command(case: Path, out: Path) -> list[str]:
     return [sys.executable, "-m", "tendonlab", "diagnose", str(case), "--out", str(out), "--no-figures"]
 
 
-def run(cases: Path | str, out: Path | str, *, jobs: int = 1, progress: bool = True) -> Path:
+def run(cases: Path | str, out: Path | str, *, jobs: int = 1, timeout: float = 1800.0, progress: bool = True) -> Path:
     """Diagnose all cases into `out`/<id>, skipping those that have a report, and return `out`/verdicts.json.
 
-    A case that fails is recorded there as "failed" with the last line it wrote. Raises ValueError where `cases` holds
+    A case that fails is recorded there as "failed" with the last line it wrote; so is one that takes longer than
+    `timeout`, s. Raises ValueError where `cases` holds
     no dataset, or where a truth lies below `cases`, next to `cases` or below `out`, see `refuse_truth`.
     """
     cases, out = Path(cases).resolve(), Path(out).resolve()
@@ -39,7 +40,7 @@ def run(cases: Path | str, out: Path | str, *, jobs: int = 1, progress: bool = T
     failed: dict[str, str] = {}
     todo = [folder for folder in folders if not (out / folder.name / REPORT).exists()]
     with ThreadPoolExecutor(max(1, jobs)) as pool:
-        pending = {pool.submit(_diagnose, folder, out / folder.name): folder.name for folder in todo}
+        pending = {pool.submit(_diagnose, folder, out / folder.name, timeout): folder.name for folder in todo}
         done = tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case", disable=not progress)
         for future in done:
             message = future.result()
@@ -53,10 +54,14 @@ def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _diagnose(case: Path, out: Path) -> str:
-    """Empty if it went well, else the last line that the process wrote."""
+def _diagnose(case: Path, out: Path, timeout: float) -> str:
+    """Empty if it went well, else the last line that the process wrote, or that the time was up."""
     out.mkdir(parents=True, exist_ok=True)
-    done = subprocess.run(command(case, out), capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(command(case, out), capture_output=True, text=True, check=False, timeout=timeout)
+    except subprocess.TimeoutExpired:
+        (out / REPORT).unlink(missing_ok=True)
+        return f"no verdict within {timeout:g} s"
     (out / "log.txt").write_text(done.stdout + done.stderr, encoding="utf-8")
     if done.returncode == 0 and (out / REPORT).exists():
         return ""

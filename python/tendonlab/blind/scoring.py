@@ -22,11 +22,13 @@ HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit
 class Score:
     """`cases`: one row per case, indexed by its id. `summary`: shares over all. `verdicts`: truth by verdict, counts.
 
-    `strengths`: shares by gap/noise. `effects`: shares by true effect.
+    `parts`: the summary of the cases with and without repeats. `strengths`: shares by gap/noise. `effects`: shares by
+    true effect.
     """
 
     cases: pd.DataFrame
     summary: dict[str, float]
+    parts: pd.DataFrame
     verdicts: pd.DataFrame
     strengths: pd.DataFrame
     effects: pd.DataFrame
@@ -34,6 +36,7 @@ class Score:
     def __str__(self) -> str:
         lines = [f"{name:<28s} {value:.3g}" for name, value in self.summary.items()]
         tables = [
+            ("by part of the cases", self.parts),
             ("verdict (truth in rows)", self.verdicts),
             ("by gap/noise", self.strengths),
             ("by effect", self.effects),
@@ -44,23 +47,26 @@ class Score:
     def to_dict(self) -> dict[str, object]:
         """Plain types: summary and rows."""
         rows = json.loads(self.cases.reset_index().to_json(orient="records"))
-        return {"format": "tendonlab-score/1", "summary": self.summary, "cases": rows}
+        parts = {str(name): dict(column) for name, column in self.parts.items()}
+        return {"format": "tendonlab-score/1", "summary": self.summary, "parts": parts, "cases": rows}
 
 
 def score(sealed: Path | str, reports: Path | str) -> Score:
     """Score the reports of `run` against the truth files of `draw`.
 
     Top-1: the most probable effect is the true one (or an accepted one) and was selected under the verdict "effect"
-    or "unknown_effect"; `ranked_first` asks for the rank alone. Raises ValueError where a report was changed after
-    it was hashed, or a truth is missing.
+    or "unknown_effect"; `ranked_first` asks for the rank alone. Every truth counts: a case without a report (crash,
+    time-out, never run) is wrong in every line. Raises ValueError where a report was changed after it was hashed, or
+    a truth is missing.
     """
     sealed, reports = Path(sealed), Path(reports)
     if not (reports / VERDICTS).exists():
         raise ValueError(f"{reports / VERDICTS} is missing: expected the folder that `blind run` wrote")
     told = json.loads((reports / VERDICTS).read_text(encoding="utf-8"))["reports"]
     rows = []
-    for name, verdict in sorted(told.items()):
-        truth = _truth(sealed, name)
+    drawn = {path.stem for path in sealed.glob("*.toml")}
+    for name in sorted({*told, *drawn}):
+        truth, verdict = _truth(sealed, name), told.get(name, {"verdict": "failed"})
         rows.append({"case": name, **_facts(truth), **_compare(truth, _report(reports, name, verdict))})
     if not rows:
         raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
@@ -89,26 +95,28 @@ def _report(reports: Path, name: str, verdict: Mapping[str, Any]) -> dict[str, A
 
 def _facts(truth: Mapping[str, Any]) -> dict[str, object]:
     draw = truth.get("draw", {})
-    names = ("gap_noise", "excitation", "controller", "form", "is_documented_form")
-    return {"effect": ",".join(truth["effects"]), "truth": truth["verdict"]} | {name: draw.get(name) for name in names}
+    names = ("gap_noise", "excitation", "controller", "repeats", "form", "is_documented_form")
+    drawn = {name: draw.get(name) for name in names} | {"repeats": draw.get("repeats", True)}  # once all cases had them
+    return {"effect": ",".join(truth["effects"]), "truth": truth["verdict"]} | drawn
 
 
 def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
     ranked = sorted(report.get("effects", []), key=lambda entry: -float(entry["probability"]))
     names = [f"{entry['element']}:{entry['effect']}" for entry in ranked]
-    selected = list(report.get("selected", []))
+    selected, failed = list(report.get("selected", [])), report["verdict"] == "failed"
     found: dict[str, object] = {
         "verdict": report["verdict"],
         "first": names[0] if names else "",
         "probability": float(ranked[0]["probability"]) if ranked else np.nan,
         "selected": ",".join(selected),
         "verdict_hit": report["verdict"] == truth["verdict"],
-        "shrinkage": _shrinkage(report),
+        "failed": failed,
+        "shrinkage": 0.0 if failed else _shrinkage(report),
         "seconds": float(report.get("seconds", np.nan)),
     }
     right = {*truth["effects"], *truth.get("accept", [])}
     if not truth["effects"]:
-        return found | {"false_alarm": bool(selected) or report["verdict"] in ("effect", "unknown_effect")}
+        return found | {"false_alarm": bool(selected) or report["verdict"] in ("effect", "unknown_effect", "failed")}
     first = names[0] if names else ""
     names_it = report["verdict"] in ("effect", "unknown_effect") and first in selected
     return found | {
@@ -135,6 +143,25 @@ def _tables(cases: pd.DataFrame) -> Score:
             cases[name] = np.nan
         cases[name] = cases[name].astype(float)
     single = cases[cases["effect"] != ""]
+    cells = pd.cut(single["gap_noise"].astype(float), list(BINS), right=False).astype(str)
+    return Score(
+        cases=cases,
+        summary=_summary(cases),
+        parts=pd.DataFrame({name: _summary(part) for name, part in _parts(cases).items()}),
+        verdicts=pd.crosstab(cases["truth"], cases["verdict"]),
+        strengths=_shares(single, cells),
+        effects=_shares(single, single["effect"]),
+    )
+
+
+def _parts(cases: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    repeats = cases["repeats"].astype(bool)
+    parts = {"with repeats": cases[repeats], "without repeats": cases[~repeats]}
+    return {name: part for name, part in parts.items() if len(part)}
+
+
+def _summary(cases: pd.DataFrame) -> dict[str, float]:
+    single = cases[cases["effect"] != ""]
     summary = {"cases": float(len(cases)), "single effects": float(len(single))}
     summary |= {name.replace("_", " "): _mean(single[name]) for name in HITS if name != "verdict_hit"}
     summary["verdict right"] = _mean(cases["verdict_hit"])
@@ -142,14 +169,8 @@ def _tables(cases: pd.DataFrame) -> Score:
         summary[f"false alarms on {truth}"] = _mean(cases.loc[cases["truth"] == truth, "false_alarm"])
     summary["median shrinkage"] = float(single["shrinkage"].median()) if len(single) else float("nan")
     summary["seconds per case"] = _mean(cases["seconds"])
-    cells = pd.cut(single["gap_noise"].astype(float), list(BINS), right=False).astype(str)
-    return Score(
-        cases=cases,
-        summary=summary,
-        verdicts=pd.crosstab(cases["truth"], cases["verdict"]),
-        strengths=_shares(single, cells),
-        effects=_shares(single, single["effect"]),
-    )
+    summary["failed"] = float(cases["failed"].sum())
+    return summary
 
 
 def _mean(values: pd.Series) -> float:

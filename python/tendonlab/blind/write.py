@@ -124,6 +124,7 @@ def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) ->
         "kind": rig.kind,
         "excitation": rig.excitation,
         "controller": rig.has_controller,
+        "repeats": rig.has_repeats,
         "form": FORMS.get(effect, ("documented",))[rig.form] if rig.kind == "effect" else "documented",
         "is_documented_form": rig.form == 0 or rig.kind != "effect",
         "gap_noise": round(strength.gap_noise, 4),
