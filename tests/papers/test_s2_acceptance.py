@@ -189,15 +189,15 @@ def test_what_is_wrong_is_named() -> None:
 
 
 def test_a_path_that_grows_with_the_angle_is_no_friction() -> None:
-    """An elastic path error adds the same force in both senses of motion, and moves nothing."""
+    """A path error stretches both cables alike in both senses of motion, and hardly moves the joint: by what its slope
+    takes from the pull, path sin(theta) (F_1 + F_2), over the stiffness 2 K r² cos²(theta)."""
     plan = s2.reference()
     plain, longer = (s2.simulate(RIG, plan, path_error=path) for path in (0.0, 3e-4))
-    assert np.array_equal(plain["theta"], longer["theta"])
-    added = (longer["F_act_1"] - plain["F_act_1"]).to_numpy()
-    theta, rate = plain["theta"].to_numpy(), plan.velocity
+    assert 2e-5 < np.abs(plain["theta"] - longer["theta"]).max() < 6e-5
+    added = sum(longer[f"F_act_{i}"] - plain[f"F_act_{i}"] for i in (1, 2)).to_numpy() / 2.0
+    theta, cruise = plain["theta"].to_numpy(), plan.cruise()
     wanted = RIG.K * 3e-4 * (1.0 - np.cos(theta))
-    assert added[rate > 0] == pytest.approx(wanted[rate > 0], abs=1e-9)
-    assert added[rate < 0] == pytest.approx(wanted[rate < 0], abs=1e-9)
+    assert added[cruise] == pytest.approx(wanted[cruise], abs=0.4)  # N: 0.3 N of damping by the rate of the path
 
 
 def test_three_readings_of_a_misprinted_unit() -> None:

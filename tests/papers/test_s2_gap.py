@@ -112,3 +112,15 @@ def test_a_hold_is_found_in_the_whole_library(tmp_path: Path) -> None:
     assert found.verdict == "effect"
     assert list(found.selected) == ["stiction:hold"]
     assert found.shrinkage["from_refitted"]["value"] > 0.8
+
+
+@pytest.mark.slow
+def test_a_preload_that_varies_with_the_angle_is_found(tmp_path: Path) -> None:
+    """G3: both cables gain 0.3 mm times 1 - cos(theta), which Table II knows only as friction of its bushings."""
+    found = diagnose(s2.write_dataset(tmp_path, RIG, path_error=3e-4))
+    assert found.verdict == "effect"
+    assert list(found.selected) == ["cable:preload_variation"]
+    assert not found.indistinguishable
+    variation = found.effects[0].parameters["preload_variation"]
+    assert variation["ci95"][0] < 3e-4 * RIG.K < variation["ci95"][1]
+    assert found.shrinkage["from_refitted"]["value"] > 0.8

@@ -29,6 +29,7 @@ def still(angle: float, *, duration: float = 1.0) -> Experiment:
         ({}, {}),
         ({"gear:ripple": {"ripple_sine": 0.1, "ripple_cosine": 0.0}}, {"ripple": 0.1}),
         ({"stiction:hold": {"hold": 1.0}}, {"sense": "hold"}),
+        ({"cable:preload_variation": {"preload_variation": 3e-4 * RIG.K}}, {"path_error": 3e-4}),
     ],
 )
 def test_it_is_the_twin(effects: dict, twin: dict) -> None:
@@ -108,6 +109,39 @@ def test_it_starts_where_the_nuts_hold_it(angle: float, ripple: float) -> None:
     assert found.ports is not None
     difference = found.ports[("cable_1", "force")] - found.ports[("cable_2", "force")]
     assert difference.iloc[-1] == pytest.approx(float(s2.equations.holding_difference(RIG, angle)), rel=1e-6)
+
+
+VARIATION = {"cable:preload_variation": {"preload_variation": 500.0}}
+
+
+@pytest.mark.parametrize("angle", [-0.5, 0.7])
+def test_a_path_that_grows_with_the_angle_pulls_the_joint_back(angle: float) -> None:
+    """At rest both cables gain the same path, P/K (1 - cos theta), and their sum pulls against its slope."""
+    found = s2.system(RIG).with_effects(VARIATION).simulate(still(angle), ports=True)
+    assert np.abs(found["joint_angle"] - angle).max() < 1e-9
+    assert found.ports is not None
+    one, two = (found.ports[(name, "force")].iloc[-1] for name in ("cable_1", "cable_2"))
+    assert one + two == pytest.approx(2.0 * (RIG.T + 500.0 * (1.0 - np.cos(angle))), rel=1e-9)
+    back = 500.0 / RIG.K * np.sin(angle) * (one + two)
+    torque = RIG.r * np.cos(angle) * (one - two) - back + float(s2.equations.gravity_torque(RIG, angle))
+    assert torque == pytest.approx(0.0, abs=1e-6 * abs(back))
+
+
+def test_what_the_path_takes_from_the_joint_is_in_the_cables() -> None:
+    """Cables without damping between nuts at rest and a joint that swings: the energy of all stays."""
+    time = np.linspace(0.0, 0.5, 501)
+    frame = pd.DataFrame({"actuator_velocity": 0.0, "joint_angle": 0.7}, index=pd.Index(time, name="t"))
+    swing = Experiment(name="swing", data=frame, initial={"joint_angle": 0.7, "joint_velocity": 0.2})
+    own = {name: value for name, value in s2.parameters(RIG).items() if not name.startswith("bushing")}
+    effects = ("motor:viscous", "gear:arctan")
+    undamped = tl.System(kind="cable_joint", parameters={**own, "cable_damping": 0.0}, effects=effects)
+    found = undamped.with_effects(VARIATION).simulate(swing, ports=True, tolerance=1e-10)
+    assert found.ports is not None
+    pulls = found.ports[[("cable_1", "force"), ("cable_2", "force")]].to_numpy()
+    joint = s2.equations.joint_energy(RIG, found["joint_angle"].to_numpy(), found["joint_velocity"].to_numpy())
+    energy = joint + np.sum(pulls**2, axis=1) / (2.0 * RIG.K)
+    assert np.ptp(joint) > 1e-3
+    assert np.ptp(energy) < 1e-7
 
 
 def test_no_torque_moves_a_joint_that_lies_flat() -> None:

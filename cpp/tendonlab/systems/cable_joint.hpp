@@ -6,6 +6,7 @@ namespace tendonlab::systems {
 ///   I(theta) theta'' = r cos(theta) (F_1 - F_2) + tau_g + 2 m_2 l_1 d_21 sin(theta) theta'^2 - friction     (S2 eq. 5)
 ///   J_m omega'' = k i - friction - N (F_act_1 - F_act_2),   u' = N omega                                    (S2 eq. 1)
 ///   F_i = max(0, T + K x_i + c x_i'),  x_1 = u - r sin(theta) + x_0 = -x_2                             (S2 eqs 2, 3)
+/// Where the path of both cables grows with theta, F_i counts that too, and so does the torque on the joint.
 /// Friction of the bushings acts between guide and nut: it shows in F_act_i = F_i + F_a_i and brakes the motor, not the
 /// joint, in the sense of the nuts, so that it never feeds their motion (S2 fig. 2). u counts from where the joint
 /// rests at theta = 0, which is x_0. A nut velocity that is prescribed takes the place of the motor, which then idles,
@@ -69,7 +70,7 @@ struct CableJoint : SystemDefaults {
 
   using Bushing =
       Slot<T, typename Joined<friction::Bushing, Laws<friction::Coulomb, friction::Viscous, friction::Stribeck>>::type>;
-  using Cable = Slot<T, Laws<transmission::TautCompliance, transmission::ToeRegion>>;
+  using Cable = Slot<T, transmission::Cable>;
   using Stiction = Slot<T, Laws<transmission::Hold>>;
   std::tuple<Slot<T, friction::All>, Slot<T, friction::All>, Slot<T, actuation::Motor>,
              Slot<T, Laws<friction::Arctan, transmission::Ripple>>, Cable, Cable, Bushing, Bushing, Stiction, Stiction>
@@ -137,8 +138,10 @@ struct CableJoint : SystemDefaults {
     const S turning = omega + in.template input<1>(at.time) / travel;
     const Nut<S> nut = carried(turned, constant<S>(1.0));  // velocity: travel per motor angle
     const S nut_velocity = nut.velocity * turning, guided = arm * at.velocity[0];
-    set(c.port[cable_1], nut_velocity - guided, nut.position - anchor_distance * sin(theta) + rest_stretch);
-    set(c.port[cable_2], -c.port[cable_1].velocity, -c.port[cable_1].position);
+    const S path = path_slope(theta), longer = path * at.velocity[0], pulled = nut_velocity - guided;
+    set(c.port[cable_1], longer + pulled, nut.position - anchor_distance * sin(theta) + rest_stretch);
+    set(c.port[cable_2], longer - pulled, -c.port[cable_1].position);
+    c.port[cable_1].wrap = c.port[cable_2].wrap = theta;
     pass_bushings(c, theta, guided, nut_velocity, mode, idles);
     const S pull = tension<cable_1>(c) - tension<cable_2>(c), gravity_torque = weight(theta);
     const S known = load.apply(S{});
@@ -149,8 +152,8 @@ struct CableJoint : SystemDefaults {
     c.applied[0] = gravity_torque + whirl(theta) * square(at.velocity[0]) + known;
     c.inverse_inertia = {1.0 / inertia(cosine), constant<S>(1.0) / motor_inertia};
     c.lever[joint][0] = c.lever[motor][1] = c.lever[winding][1] = constant<S>(1.0);
-    c.lever[cable_1][0] = -arm;
-    c.lever[cable_2][0] = arm;
+    c.lever[cable_1][0] = path - arm;
+    c.lever[cable_2][0] = path + arm;
     if (idles) return c;
     c.lever[gear][1] = constant<S>(1.0);
     for (int i : {cable_1, bushing_1, stiction_1}) {
@@ -190,6 +193,15 @@ struct CableJoint : SystemDefaults {
     at.velocity = velocity;
     std::get<gear>(slot).template each<role::motion>([&](const auto& law) { at = law.motion(at); });
     return {per_turn * at.position, travel * at.velocity};
+  }
+  /// What the path of either cable gains per angle of the joint.
+  template <class S>
+  S path_slope(const S& theta) const {
+    S sum{};
+    std::get<cable_1>(slot).template each<role::motion>([&](const auto& law) {
+      if constexpr ((std::decay_t<decltype(law)>::sees & sees_wrap) != 0) sum = sum + law.slope(theta);
+    });
+    return sum;
   }
   template <int i, class S>
   S tension(const MovingCoupling<S, num_ports, 2>& c) const {
@@ -240,19 +252,22 @@ struct CableJoint : SystemDefaults {
     const T near = link_1_mass * link_1_center + link_2_mass * link_1_length, far = 2.0 * link_2_mass * link_2_center;
     return -(gravity * (near * first + far * second));
   }
-  /// Elongation of cable 1 that holds the joint at rest, by Newton: with both cables taut and linear in one step.
+  /// Elongation of cable 1 that holds the joint at rest, but for the path that both cables gain, by Newton: with both
+  /// cables taut and linear in one step.
   T holding_stretch(const T& theta) const {
     using D = Dual<T, 1>;
     const auto& cable = std::get<cable_1>(slot);
     const T& stiffness = std::get<transmission::TautCompliance<T>>(cable.laws).stiffness;
     if (plain(stiffness) <= 0) return T(0.0);
-    const T wanted = -(weight(theta) / (anchor_distance * cos(theta)));
+    const T arm = anchor_distance * cos(theta), wanted = -(weight(theta) / arm), path = path_slope(theta) / arm;
     T stretch = wanted / (2.0 * stiffness);
     for (int i = 0; i < 20; ++i) {
       Sliding<D> pulled, released;
       pulled.position = variable<D>(stretch, 0);
       released.position = -pulled.position;
-      const D pull = cable.respond(pulled, D{}).force - cable.respond(released, D{}).force;
+      pulled.wrap = released.wrap = lift<D>(theta);
+      const D one = cable.respond(pulled, D{}).force, two = cable.respond(released, D{}).force;
+      const D pull = one - two - path * (one + two);
       if (plain(pull.d[0]) <= 0) break;  // both cables are slack
       stretch = stretch + (wanted - pull.value) / pull.d[0];
     }

@@ -9,6 +9,7 @@
 #include "tendonlab/transmission/distributed_presliding.hpp"
 #include "tendonlab/transmission/end_compliance.hpp"
 #include "tendonlab/transmission/hold.hpp"
+#include "tendonlab/transmission/preload_variation.hpp"
 #include "tendonlab/transmission/pretension_loss.hpp"
 #include "tendonlab/transmission/ripple.hpp"
 #include "tendonlab/transmission/sheath_capstan.hpp"
@@ -21,8 +22,10 @@ namespace tendonlab::transmission {
 using All = Laws<Backlash, Compliance>;
 /// Friction of a cable on a pulley, stated by friction coefficients.
 using Contacts = Laws<Capstan, ContactStribeck, ContactAsymmetry>;
+/// Of a pretensioned cable that pulls a joint.
+using Cable = Laws<TautCompliance, PreloadVariation, ToeRegion>;
 /// Of a drive that pulls pretensioned cables by a gear.
-using Pull = Laws<TautCompliance, ToeRegion, Ripple, Hold>;
+using Pull = Joined<Cable, Laws<Ripple, Hold>>::type;
 /// Of pretensioned tendons in sheaths.
 using Sheath = Laws<PretensionLoss, CurvatureSkew, SheathCapstan, Slack>;
 /// Of the effort that those sheaths pass on.

@@ -69,6 +69,7 @@ def log_of_twin(
     ripple: float = 0.0,
     hold: bool = False,
     toe_tension: float = 0.0,
+    path_error: float = 0.0,
     seed: int = 0,
 ) -> pd.DataFrame:
     """One record of the twin at 50 Hz: `actuator_velocity` as the drive did it, half a step of 1 ms after it was asked
@@ -77,7 +78,7 @@ def log_of_twin(
     Forces are left out (NaN) within 0.1 s of the start and end of every move: a jump that falls between two samples
     says nothing of its size (S2 sec. IV-B.3 leaves out 1 s)."""
     sense: Sense = "hold" if hold else "instantaneous"
-    run = simulate(of, of_reference, ripple=ripple, sense=sense, toe_tension=toe_tension)
+    run = simulate(of, of_reference, ripple=ripple, sense=sense, toe_tension=toe_tension, path_error=path_error)
     asked = nut_input(of, of_reference)
     velocity = 0.5 * (asked + asked.shift(1, fill_value=0.0))  # the twin holds it from step to step
     log = velocity.iloc[::EVERY].join(measured(run.iloc[::EVERY], seed=seed))
@@ -94,12 +95,13 @@ def write_dataset(
     ripple: float = 0.0,
     hold: bool = False,
     toe_tension: float = 0.0,
+    path_error: float = 0.0,
     repeated: bool = False,
     seed: int = 0,
 ) -> Dataset:
-    """Write logs of a twin with the withheld effects `ripple`, `hold` and `toe_tension`, N, into `folder` as a dataset
-    whose simulator has none of them, and load it. `repeated`: one run is recorded twice, which separates noise from
-    model error."""
+    """Write logs of a twin with the withheld effects `ripple`, `hold`, `toe_tension`, N, and `path_error`, m, into
+    `folder` as a dataset whose simulator has none of them, and load it. `repeated`: one run is recorded twice, which
+    separates noise from model error."""
     into = Path(folder)
     into.mkdir(parents=True, exist_ok=True)
     lines = ['format = "tendonlab-dataset/1"', 'name = "s2-twin"']
@@ -118,6 +120,7 @@ def write_dataset(
             ripple=ripple,
             hold=hold,
             toe_tension=toe_tension,
+            path_error=path_error,
             seed=1000 * seed + k,
         )
         record.to_csv(into / f"{name}.csv")

@@ -54,19 +54,21 @@ def simulate(
     `controller`: closes the loop on theta; without one the nuts move as the reference asks, r cos(theta) theta'.
     `ripple`: u' -> u' (1 + ripple sin(2 pi u / p)) of the nuts. `sense`: what friction of the bushings follows, the
     joint's velocity ("instantaneous"), the nuts' and at rest their last ("hold"), the reference's, held likewise
-    ("reference"), or the joint's over 1e-4 m/s ("smooth"). `path_error`: elastic path, m, that grows as 1 - cos(theta)
-    in both cables. `toe_tension`: N, below which the cables are softer (`Spring`). Columns: theta, theta_rate,
-    nut_rate, elongation, F_r_1, F_r_2, F_act_1, F_act_2. S2 eqs. 2 to 11.
+    ("reference"), or the joint's over 1e-4 m/s ("smooth"). `path_error`: path, m, that both cables gain as
+    1 - cos(theta), which stretches them and brakes the joint. `toe_tension`: N, below which the cables are softer
+    (`Spring`). Columns: theta, theta_rate, nut_rate, elongation (common to both, cable 1 longer and 2 shorter), F_r_1,
+    F_r_2, F_act_1, F_act_2. S2 eqs. 2 to 11.
     Raises ParameterError for an unknown `sense`, and for a `toe_tension` that is no number or negative."""
     if sense not in SENSES:
         raise ParameterError(f"sense = {sense!r}: expected one of {', '.join(SENSES)}")
     spring = Spring(of, within("toe_tension", toe_tension, 0.0, np.inf, "N"))
-    motion = pd.DataFrame(_steps(of, reference, controller, ripple, spring), index=pd.Index(reference.time, name="t"))
+    steps = _steps(of, reference, controller, ripple, spring, path_error)
+    motion = pd.DataFrame(steps, index=pd.Index(reference.time, name="t"))
     return motion.join(_forces(of, motion, reference, sense, path_error, spring))
 
 
 def _steps(
-    of: Constants, reference: Reference, controller: PID | None, ripple: float, spring: Spring
+    of: Constants, reference: Reference, controller: PID | None, ripple: float, spring: Spring, path_error: float
 ) -> dict[str, Array]:
     """Theta, its rate, common elongation e of cable 1 (that of cable 2 is -e), and its rate at every step."""
     h = reference.step
@@ -91,9 +93,11 @@ def _steps(
         inertia = fixed + swinging * cos(theta)
         near, far = cos(theta + of.phi), cos(2.0 * theta + of.phi)
         gravity = -of.g * (of.m_1 * of.d_11 * near + of.m_2 * (of.l_1 * near + 2.0 * of.d_21 * far))
-        (one, stiff_1), (two, stiff_2) = spring.pull(e), spring.pull(-e)
+        path, slope = path_error * (1.0 - cos(theta)), path_error * sin(theta)
+        (one, stiff_1), (two, stiff_2) = spring.pull(path + e), spring.pull(path - e)
         stiffness = stiff_1 + stiff_2
         pull = arm * (one - two + (h * stiffness + 2.0 * of.c) * nut)
+        pull -= slope * (one + two + 2.0 * of.c * slope * rate)
         whirl = 2.0 * of.m_2 * of.l_1 * of.d_21 * sin(theta) * rate * rate
         rate = (inertia * rate + h * (pull + gravity + whirl)) / (
             inertia + h * arm * arm * (h * stiffness + 2.0 * of.c)
@@ -109,14 +113,14 @@ def _forces(
 ) -> pd.DataFrame:
     theta = motion["theta"].to_numpy()
     e, rate = motion["elongation"].to_numpy(), motion["elongation_rate"].to_numpy()
-    path = path_error * (1.0 - np.cos(theta))
+    path, growing = path_error * (1.0 - np.cos(theta)), path_error * np.sin(theta) * motion["theta_rate"].to_numpy()
     velocity = of.r * np.cos(theta) * motion["theta_rate"].to_numpy()
     velocity[np.abs(velocity) <= RESTING] = 0.0
     followed = {"hold": motion["nut_rate"].to_numpy(), "reference": reference.velocity}.get(sense, velocity)
     found: dict[str, Array] = {}
     for i, sign in enumerate((1.0, -1.0)):
         tension = np.array([spring.pull(x)[0] for x in (sign * e + path).tolist()])
-        carried = np.maximum(0.0, tension + sign * of.c * rate)
+        carried = np.maximum(0.0, tension + of.c * (sign * rate + growing))
         if sense == "smooth":
             forward, backward = (equations.bushing_force(of.bushings[i], theta, s, of.T) for s in (1.0, -1.0))
             share = np.tanh(velocity / SMOOTH_SPEED)
