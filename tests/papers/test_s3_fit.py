@@ -101,6 +101,27 @@ def test_polishing_finds_a_threshold_that_is_five_per_cent_off() -> None:
         assert found.mu_d == pytest.approx(TRUE.mu_d, rel=0.01)
 
 
+def test_polishing_scans_the_threshold_within_ten_per_cent_in_even_steps() -> None:
+    """The other numbers stay, and the gate keeps its shape; then a simplex of one per cent."""
+    tried: list[FrictionParameters] = []
+
+    def objective(p: FrictionParameters) -> float:
+        tried.append(p)
+        return abs(p.v_thres / TRUE.v_thres - 1.04)
+
+    of = replace(search("v_thres", "mu_d"), objective=objective)  # type: ignore[arg-type]
+    found = of.polished(TRUE)
+    scan = tried[:62]
+    assert [p.v_thres / TRUE.v_thres for p in scan] == pytest.approx([1.0, *np.linspace(0.9, 1.1, 61)])
+    assert {(p.mu_d, p.mu_s, p.v_s) for p in scan} == {(TRUE.mu_d, TRUE.mu_s, TRUE.v_s)}
+    assert [p.s_v * p.v_thres**2 for p in scan] == pytest.approx([TRUE.s_v * TRUE.v_thres**2] * 62)
+    corners = [(p.v_thres / (1.04 * TRUE.v_thres), p.mu_d / TRUE.mu_d) for p in tried[62:65]]
+    assert np.array(corners) == pytest.approx(np.exp([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01]]), rel=2e-3)
+    assert found.v_thres == pytest.approx(1.04 * TRUE.v_thres, rel=1e-3)
+    kept = replace(search("mu_d"), objective=objective).polished(TRUE)  # type: ignore[arg-type]
+    assert kept.v_thres == TRUE.v_thres
+
+
 def test_the_gate_hardens_by_three_and_the_best_start_is_kept() -> None:
     found = fit_gradient(RECORDS, num_starts=3, free=("mu_d", "v_thres"))
     stages = found.path[found.path["start"] == 1].iloc[:6]

@@ -29,6 +29,13 @@ def test_the_freedom_left_is_the_trace_of_one_minus_the_smoother(log_lambda: flo
     assert columns[0][1] == pytest.approx(trace, rel=1e-9)
 
 
+def test_the_gcv_is_the_mean_square_residual_over_the_squared_share_of_freedom() -> None:
+    time, values = record(step=1.0, noise=0.1)
+    fitted, freedom = Smoother.of(time, values).solve(2.0)
+    expected = np.mean(np.square(values - fitted)) / (freedom / len(values)) ** 2
+    assert Smoother.of(time, values).score(2.0) == pytest.approx(expected)
+
+
 @pytest.mark.parametrize("noise", [1e-4, 1e-2])
 @pytest.mark.parametrize("step", [1e-3, 0.02, 1.0])
 def test_no_lambda_has_a_smaller_gcv(step: float, noise: float) -> None:

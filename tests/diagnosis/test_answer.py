@@ -1,0 +1,91 @@
+"""From replays to the numbers of the answer: levels over the floor, what effects explain, what cannot be seen."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.answer import answer
+from tendonlab.diagnosis.answer.answer import _explained, _gap, _invisible, _levels, _next, _plain_level, _steps
+
+FLOOR: Any = SimpleNamespace(rms=np.array([0.5, np.nan, 2.0]), repeated=False)
+CASE: Any = SimpleNamespace(outputs=["a", "b", "c"], measured=[0, 2])
+
+
+def replayed(*errors: float) -> Any:
+    """Residuals of two experiments with these rms errors; the second output was not measured."""
+    rows = np.array(errors)[:, None] * np.tile([1.0, -1.0], 10)
+    return SimpleNamespace(residuals=[rows[:, :8], rows[:, 8:]])
+
+
+def test_a_level_is_the_mean_square_error_over_the_floor_of_what_was_measured() -> None:
+    assert _plain_level(replayed(1.0, np.nan, 6.0), FLOOR) == pytest.approx(0.5 * (4.0 + 9.0))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "explained"),
+    [(3.0, 2.0, 5.0 / 8.0), (3.0, 1.0, 1.0), (3.0, 0.2, 1.0), (3.0, 4.0, 0.0), (1.0, 0.5, None), (0.9, 0.9, None)],
+)
+def test_effects_explain_the_share_of_the_excess_over_the_floor_that_they_remove(
+    before: float, after: float, explained: float | None
+) -> None:
+    """Errors in floors: an excess of 9 - 1 falls to 4 - 1."""
+    stages = {
+        name: replayed(0.5 * level, np.nan, 2.0 * level)
+        for name, level in (("refitted", before), ("with_effect", after))
+    }
+    assert _explained(stages, FLOOR) == (None if explained is None else pytest.approx(explained))
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(repeated: bool) -> None:
+    floor: Any = SimpleNamespace(rms=FLOOR.rms, repeated=repeated)
+    stages = {
+        name: replayed(0.5 * level, np.nan, 2.0 * level)
+        for name, level in (("nominal", 5.0), ("refitted", 3.0), ("with_effect", 2.0))
+    }
+    nominal: Any = SimpleNamespace(mean_square=77.0)
+    search: Any = SimpleNamespace(tuned=SimpleNamespace(mean_square=7.0), selected=("x",))
+    found = _levels(search, nominal, stages, floor)
+    assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
+    assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
+    assert found.explained == pytest.approx(5.0 / 8.0)
+    search.selected = ()
+    assert _levels(search, nominal, stages, floor).explained is None
+
+
+def test_the_gap_lists_floor_and_error_of_each_stage() -> None:
+    found = _gap(CASE, {"nominal": replayed(3.0, np.nan, 4.0), "refitted": replayed(1.0, np.nan, 2.0)}, FLOOR)
+    assert found == {
+        "a": {"noise_floor": 0.5, "nominal": pytest.approx(3.0), "refitted": pytest.approx(1.0)},
+        "c": {"noise_floor": 2.0, "nominal": pytest.approx(4.0), "refitted": pytest.approx(2.0)},
+    }
+    search: Any = SimpleNamespace(path=[SimpleNamespace(added=()), SimpleNamespace(added=("x",))])
+    steps = _steps(CASE, search, [replayed(3.0, np.nan, 4.0), replayed(1.0, np.nan, 2.0)])
+    assert steps == [
+        {"effects": [], "rms": {"a": pytest.approx(3.0), "c": pytest.approx(4.0)}},
+        {"effects": ["x"], "rms": {"a": pytest.approx(1.0), "c": pytest.approx(2.0)}},
+    ]
+
+
+def test_an_effect_is_invisible_that_neither_gains_nor_could_gain_a_nat() -> None:
+    seen = [
+        SimpleNamespace(effect=name, visibility=visibility, gain=gain)
+        for name, visibility, gain in [("dim", 0.9, 0.5), ("seen", 1.1, 0.0), ("gains", 0.0, 1.1), ("chosen", 0.1, 0.1)]
+    ]
+    search: Any = SimpleNamespace(rounds=[SimpleNamespace(screened=seen)], selected=("chosen",))
+    assert _invisible(search) == ("dim",)
+    search.rounds = []
+    assert _invisible(search) == ()
+
+
+def test_the_next_experiment_separates_the_first_effect_from_its_best_rival(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(answer, "advise", lambda case, floor, first, second: [(first, second)])
+    own, rival = SimpleNamespace(fitted="own"), SimpleNamespace(fitted="rival")
+    search: Any = SimpleNamespace(rounds=[SimpleNamespace(accepted=own, trials=(own, rival))], tuned="tuned")
+    assert _next(CASE, FLOOR, search) == [("own", "rival")]
+    search.rounds = [SimpleNamespace(accepted=own, trials=(own,))]
+    assert _next(CASE, FLOOR, search) == [("own", "tuned")]
+    search.rounds = [SimpleNamespace(accepted=None, trials=(own,))]
+    assert _next(CASE, FLOOR, search) == []
