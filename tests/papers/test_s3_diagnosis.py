@@ -1,4 +1,4 @@
-"""S3's own gap, withheld on its twin, must be ranked first: slack, lost pretension, presliding."""
+"""S3's own gap, withheld on its twin, must be ranked first: slack, lost pretension, presliding, uneven bends."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from tendonlab.errors import ParameterError
 from tendonlab.papers.s3 import withheld
 
 PRESENT = {"sheath:viscous", "actuation:drive_inertia", "sheath:distributed_presliding"}  # in every twin
+CASES = ("slack", "pretension_loss", "presliding", "skew")
 IMITATED = ["sensor.output_torque:delay", "sheath:distributed_presliding", "cable:compliance"]
 IMITATED += ["sheath:viscous", "actuation:drive_inertia"]
 
@@ -17,10 +18,10 @@ IMITATED += ["sheath:viscous", "actuation:drive_inertia"]
 @pytest.fixture(scope="module")
 def found() -> dict[str, tl.Diagnosis]:
     """Each case once, by a simulator that knows nothing of the viscous friction but that there may be some."""
-    return {name: diagnose(withheld(name).dataset()) for name in ("slack", "pretension_loss", "presliding")}
+    return {name: diagnose(withheld(name).dataset()) for name in CASES}
 
 
-@pytest.mark.parametrize("case", ["slack", "pretension_loss", "presliding"])
+@pytest.mark.parametrize("case", CASES)
 @pytest.mark.slow
 def test_what_is_withheld_is_ranked_first_and_nothing_that_is_not_there_is_named(
     case: str, found: dict[str, tl.Diagnosis]
@@ -48,6 +49,15 @@ def test_lost_pretension_is_told_by_its_share(found: dict[str, tl.Diagnosis]) ->
     why = found["pretension_loss"]
     assert why.shrinkage["from_nominal"]["value"] > 0.9
     assert why.effects[0].parameters["pretension_loss"]["value"] == pytest.approx(0.2, abs=0.04)
+
+
+@pytest.mark.slow
+def test_uneven_bends_are_told_from_a_gain_of_a_sensor(found: dict[str, tl.Diagnosis]) -> None:
+    """Three wrap angles: the gain grows with their square. The twin's skew is 0.9."""
+    why = found["skew"]
+    assert why.effects[0].parameters["curvature_skew"]["value"] == pytest.approx(0.9, abs=0.1)
+    assert why.shrinkage["from_nominal"]["value"] > 0.8
+    assert why.shrinkage["from_refitted"]["value"] > 0.55
 
 
 @pytest.mark.slow

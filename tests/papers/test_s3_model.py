@@ -223,8 +223,8 @@ def test_pretension_and_free_body() -> None:
 
 def test_the_jacobian_of_the_chain_is_that_of_its_rate() -> None:
     rng = np.random.default_rng(1)
-    for slack in (False, True):
-        chain = Chain(shape=paper_shape(3), pretension=100.0, slack=slack, num_nodes=4)
+    for switch in ({}, {"slack": True}, {"tension_drop": True}):
+        chain = Chain(shape=Shape.skewed(5.0, length=0.8, skew=0.9), pretension=100.0, num_nodes=4, **switch)
         of = ChainEquations.of(chain, Trajectory("sine", 15.0, 10.0))
         y = rng.normal(0.0, 1e-3, of.size)
         exact = of.jacobian(0.3, y)
@@ -246,6 +246,18 @@ def test_the_chain_s_friction_adds_up_to_the_model_s_offset() -> None:
     chain = Chain(shape=paper_shape(4), pretension=200.0)
     law = TransmissionCoefficients.of(paper_shape(4), mu=0.056, T_s=200.0, r_in=0.05, r_out=0.05)
     assert np.sum(ChainEquations.of(chain, Trajectory("sine", 1.0, 1.0)).level) == pytest.approx(-law.offset, rel=1e-12)
+
+
+@pytest.mark.parametrize("skew", [-0.9, 0.0, 0.9])
+def test_a_chain_whose_tensions_fall_has_the_gain_and_the_offset_of_its_shape(skew: float) -> None:
+    """Eq. 18 while it slides, less what its viscous nodes, its drive and the load take, 0.6 N·m·s/rad at most."""
+    shape, T_s = Shape.skewed(6.57, length=0.8, skew=skew), cable_pretension(54.0)
+    chain = Chain(shape=shape, pretension=T_s, tension_drop=True)
+    log = chain.simulate(Trajectory("sine", 22.0, 10.0), duration=3.0, sample_rate=50.0, seed=None).loc[1.5:2.2]
+    law = TransmissionCoefficients.of(shape, mu=0.056, T_s=T_s, r_in=0.05, r_out=0.05)
+    lost = (law.output_torque(log["tau_in"].to_numpy()) - log["tau_out"].to_numpy()) / (DEGREE * log["v"].to_numpy())
+    assert lost == pytest.approx(np.full(len(log), 0.5), abs=0.1)
+    assert abs(law.offset + 8.15 + 0.5 * skew) < 0.1  # N·m: so the shapes are far apart
 
 
 def test_a_group_has_the_four_trajectories_of_table_1() -> None:

@@ -31,8 +31,10 @@ class Chain:
     """A rig with its cable as `num_nodes` friction nodes. `pretension`: T_s, N, as the load cells read it.
 
     `slack`: where the pulling cable carries more than both together did at rest, the other one is loose and friction
-    grows with the torque. `pretension_scale`: true pretension over the reading. `bristle_length`: z_0, rad;
-    `node_damping`: d, N·m·s/rad."""
+    grows with the torque. `tension_drop`: the sum of both tensions, and friction with it, falls along a sliding sheath
+    by mu e/r per rad and keeps its mean, since the cables keep their length (eq. 6, 10, 12, 13); this matters for
+    shapes that are not the same from both ends. `pretension_scale`: true pretension over the reading.
+    `bristle_length`: z_0, rad; `node_damping`: d, N·m·s/rad."""
 
     shape: Shape | BumpShape
     pretension: float
@@ -42,6 +44,7 @@ class Chain:
     bristle_length: float = 4e-3
     node_damping: float = 0.05
     slack: bool = False
+    tension_drop: bool = False
     pretension_scale: float = 1.0
 
     def __post_init__(self) -> None:
@@ -105,6 +108,7 @@ class ChainEquations:
     stiffness: float
     level: np.ndarray  # F_i without slack, N·m
     share: np.ndarray  # of the torque passing a node that is lost there where a cable is loose
+    drop: np.ndarray  # d F_i / d friction-weighted torque at each node, which makes the tensions fall, (n, n)
     ratio: float
     stribeck: float
     stretching: np.ndarray  # d e / d state, (n + 1, size)
@@ -119,10 +123,13 @@ class ChainEquations:
         stretching = np.zeros((n + 1, 2 * n + 4))
         stretching[np.arange(n + 1), positions[:-1]] = k
         stretching[np.arange(n + 1), positions[1:]] = -k
+        left, bent = np.exp(-p.mu_d * phi), p.mu_d * np.diff(phi)  # left: of the pretension, when it was set
+        even = 0.5 * float(np.mean(left[1:] + left[:-1])) * bent
         return cls(
-            chain=chain, trajectory=trajectory, stiffness=k, level=-torque * np.diff(np.exp(-p.mu_d * phi)),
-            share=1.0 - np.exp(-p.mu_d * np.diff(phi)), ratio=p.mu_s / p.mu_d - 1.0, stribeck=p.v_s,
-            stretching=stretching,
+            chain=chain, trajectory=trajectory, stiffness=k,
+            level=torque * (even if chain.tension_drop else -np.diff(left)),
+            share=1.0 - np.exp(-bent), drop=_drop(bent) if chain.tension_drop else np.zeros((n, n)),
+            ratio=p.mu_s / p.mu_d - 1.0, stribeck=p.v_s, stretching=stretching,
         )  # fmt: skip
 
     @property
@@ -140,6 +147,8 @@ class ChainEquations:
         n = self.chain.num_nodes
         e, z = self.stretch(y), y[n + 2 : 2 * n + 2]
         level = np.maximum(self.level, np.abs(e[:-1]) * self.share) if self.chain.slack else self.level
+        if self.chain.tension_drop:
+            level = level - self.drop @ (z / self.chain.bristle_length * 0.5 * (e[:-1] + e[1:]))
         v = (e[:-1] - e[1:] - level * z / self.chain.bristle_length) / self.chain.node_damping
         return e, level, v, z
 
@@ -166,6 +175,10 @@ class ChainEquations:
         if self.chain.slack:
             loose = np.abs(e[:-1]) * self.share > self.level
             speed -= (loose * np.sign(e[:-1]) * self.share * z / (z_0 * d))[:, None] * self.stretching[:-1]
+        if self.chain.tension_drop:
+            passing = 0.5 * (z / z_0)[:, None] * (self.stretching[:-1] + self.stretching[1:])
+            passing[i, n + 2 + i] += 0.5 * (e[:-1] + e[1:]) / z_0
+            speed += (z / (z_0 * d))[:, None] * (self.drop @ passing)
         jacobian = np.zeros((self.size, self.size))
         jacobian[0, 1] = 1.0
         jacobian[1] = -self.stretching[0] / rig.J_A
@@ -179,3 +192,10 @@ class ChainEquations:
         jacobian[-1, -2] -= rig.K_p / rig.J_B
         jacobian[-1, -1] -= rig.K_d / rig.J_B
         return jacobian
+
+
+def _drop(bent: np.ndarray) -> np.ndarray:
+    """By how much the friction of node i is less for the torque at node j, where it slides: `bent` is mu times the
+    angle turned at each node. What precedes a node counts in full, its own half, and the mean is made good."""
+    before = np.tri(len(bent), k=-1) + 0.5 * np.eye(len(bent))
+    return np.asarray(bent[:, None] * (before - before.mean(axis=0)) * bent)

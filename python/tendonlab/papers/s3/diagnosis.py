@@ -20,6 +20,7 @@ from tendonlab.papers.s3.trajectories import Trajectory
 
 SAMPLE_RATE = 100.0  # Hz: what happens takes tenths of a second
 DURATION = 12.0  # s a run
+SKEW = 0.9  # curvature at the load over its mean, less one, of the sheaths whose skew is withheld
 GATE_STEEPNESS = 15.0  # s_v v_thres² of the simulator's gate: soft enough to have a slope that a fit can follow
 
 
@@ -55,7 +56,8 @@ def identified() -> FrictionParameters:
 
 def withheld(case: str, *, seed: int = 1) -> Withheld:
     """One of the cases "slack" (above 2 r T_s one tendon is loose), "pretension_loss" (true pretension 0.8 of the
-    reading) and "presliding" (superposed torques, whose partial reversals only stretch the cable). `seed`: of noise.
+    reading), "presliding" (superposed torques, whose partial reversals only stretch the cable) and "skew" (the sheaths
+    bend more towards the load, and are believed to be the same from both ends). `seed`: of noise.
 
     Raises ParameterError for another name."""
     if case not in _CASES:
@@ -70,6 +72,7 @@ def _runs(
     repeats: int = 1,
     slack: bool = False,
     pretension_scale: float = 1.0,
+    skew: float = 0.0,
 ) -> tuple[Record, ...]:
     """`repeats` records for each (shape, reading in kg, kind, amplitude in N·m, period in s)."""
     return tuple(
@@ -80,6 +83,7 @@ def _runs(
             seed=seed + k,
             slack=slack,
             pretension_scale=pretension_scale,
+            skew=skew,
             sample_rate=SAMPLE_RATE,
             duration=DURATION,
         )
@@ -125,6 +129,18 @@ def _presliding(seed: int) -> Withheld:
     )
 
 
+def _skew(seed: int) -> Withheld:
+    """Gain in proportion to skew and squared wrap angle (eq. 18): three wrap angles tell it from a gain of a sensor."""
+    fitted = [(1, 54.0, "sine", 22.0, 10.0), (3, 54.0, "sine", 22.0, 7.0), (8, 54.0, "sine", 22.0, 10.0)]
+    judged = [(2, 54.0, "sine", 22.0, 10.0), (4, 54.0, "sine", 18.0, 10.0)]
+    return Withheld(
+        effect="sheath:curvature_skew",
+        told="the sheaths bend more towards the load",
+        records=_runs(fitted, seed=seed, repeats=2, skew=SKEW),
+        held_out=_runs(judged, seed=seed + 100, skew=SKEW),
+    )
+
+
 _CASES: dict[str, Callable[[int], Withheld]] = {
-    "slack": _slack, "pretension_loss": _pretension_loss, "presliding": _presliding,
+    "slack": _slack, "pretension_loss": _pretension_loss, "presliding": _presliding, "skew": _skew,
 }  # fmt: skip

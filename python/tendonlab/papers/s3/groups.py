@@ -56,10 +56,12 @@ def run_chain(
     seed: int | None = 0,
     slack: bool = False,
     pretension_scale: float = 1.0,
+    skew: float = 0.0,
     sample_rate: float = 200.0,
 ) -> Record:
-    """A record of the twin on shape theta_`number` with both load cells at `reading`, kg; see Chain."""
-    log = _exact_log(number, reading, trajectory, duration, sample_rate, slack, pretension_scale)
+    """A record of the twin on shape theta_`number` with both load cells at `reading`, kg; see Chain. With a `skew` the
+    sheath has that wrap angle, but bends more towards the load, and the record still states the shape theta_i."""
+    log = _exact_log(number, reading, trajectory, duration, sample_rate, slack, pretension_scale, skew)
     log = log.copy() if seed is None else with_noise(log, seed=seed)
     name = f"theta_{number}, {reading:g} kg, {trajectory.amplitude:g} N*m, {trajectory.kind} {trajectory.period:g} s"
     return Record(
@@ -82,10 +84,16 @@ def _exact_log(
     sample_rate: float,
     slack: bool,
     pretension_scale: float,
+    skew: float,
 ) -> pd.DataFrame:
     """One integration for all: repeats of a run differ only by the noise of its sensors."""
+    stated = paper_shape(number)
     chain = Chain(
-        shape=paper_shape(number), pretension=cable_pretension(reading), slack=slack, pretension_scale=pretension_scale
+        shape=Shape.skewed(stated.wrap_angle, length=stated.length, skew=skew) if skew else stated,
+        pretension=cable_pretension(reading),
+        slack=slack,
+        tension_drop=skew != 0.0,
+        pretension_scale=pretension_scale,
     )
     return chain.simulate(trajectory, duration=duration, sample_rate=sample_rate, seed=None)
 
