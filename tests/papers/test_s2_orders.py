@@ -31,11 +31,11 @@ def test_lines_are_as_narrow_as_one_cycle_in_all_turns() -> None:
 
 def test_what_has_no_orders_is_refused() -> None:
     assert order_spectrum([0.0, 0.5, 1.0], [1.0, 2.0, 3.0]).size == 401
-    with pytest.raises(ParameterError, match="turns: 0.99 covered; expected one or more"):
+    with pytest.raises(ParameterError, match=r"turns: 0\.99 covered; expected one or more"):
         order_spectrum([0.0, 0.5, 0.99], [1.0, 2.0, 3.0])
     with pytest.raises(ParameterError, match="values has 2 samples: expected 3"):
         order_spectrum([0.0, 0.5, 1.0], [1.0, 2.0])
-    with pytest.raises(ParameterError, match="highest = 0.9"):
+    with pytest.raises(ParameterError, match=r"highest = 0\.9"):
         order_spectrum(TURNS, TURNS, highest=0.9)
     with pytest.raises(ParameterError, match="num_orders = 0"):
         order_spectrum(TURNS, TURNS, num_orders=0)
