@@ -1,11 +1,18 @@
-"""Refits of candidates: which of two fits is kept."""
+"""Refits of candidates: which of two fits is kept, where fits start, and when a sketch is finished."""
+
+from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from tendonlab.diagnosis.search.refit import more_evident
+from tendonlab.diagnosis.search import refit as refits
+from tendonlab.diagnosis.search.refit import SKETCH, _cooled, more_evident
+from tendonlab.diagnosis.search.screen import Screened
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 
 
@@ -30,3 +37,123 @@ def test_a_fit_whose_derivatives_exploded_outbids_nothing(
 
 def test_a_failed_fit_leaves_the_best_one(nominal: Fitted) -> None:
     assert more_evident(nominal, None) is nominal
+
+
+class Fits:
+    """A fitter that notes what it is asked for; its fits have the costs and misfits that are stated in turn."""
+
+    def __init__(self, *fits: Any, repeated: bool = True) -> None:
+        self.fits, self.asked = list(fits), list[dict[str, Any]]()
+        self.levels = list[float]()
+        self.floor = SimpleNamespace(repeated=repeated)
+        self.case = SimpleNamespace(dataset=SimpleNamespace(parameters={"inertia": None, "friction": None}))
+
+    def fit(self, system: Any, **asked: Any) -> Any:
+        self.asked.append({"system": system, **asked})
+        found = self.fits.pop(0)
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    def under(self, level: float) -> Fits:
+        self.levels.append(level)
+        return self
+
+    def releveled(self, fit: Any) -> Any:
+        return ("sketch", fit)
+
+    def settled(self, fit: Any) -> Any:
+        return ("settled", fit)
+
+
+def fit_of(misfit: float = 1.0, *, cost: float = 1.0, converged: bool = True) -> Any:
+    return SimpleNamespace(
+        whitened_square=misfit, cost=cost, converged=converged, system="fitted", initial=((misfit,),)
+    )
+
+
+class Rig:
+    """A simulator that notes the values it is given."""
+
+    def __init__(self, *names: str) -> None:
+        self.parameters: Any = dict.fromkeys(names, 9.0)
+
+    def with_parameters(self, values: dict[str, float]) -> Any:
+        return values
+
+
+def tuned() -> Any:
+    free = [
+        SimpleNamespace(name=name, mean=mean, value=lambda x: 10.0 * x)
+        for name, mean in [("inertia", 0.2), ("friction", 0.3), ("added", 0.4)]
+    ]
+    return SimpleNamespace(free=free, added=("a",), initial=((0.0,),), system="base", cost=100.0, evidence=0.0)
+
+
+@pytest.mark.parametrize(
+    ("misfits", "levels"),
+    [
+        ([40.0, 0.2, 0.3, 0.1], [40.0, 8.0, 2.4]),  # until it is near the floor: 0.24
+        ([40.0, 0.6], [40.0]),  # a fit that does not halve the misfit ends it
+        ([0.5, 0.1], [1.0]),
+        ([1e6, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4, 0.4], [1e6, 4e5, 1.6e5, 6.4e4, 2.56e4, 1.024e4]),  # six at the most
+    ],
+)
+def test_cooling_starts_at_nominal_values_and_goes_on_while_the_misfit_halves(
+    misfits: list[float], levels: list[float]
+) -> None:
+    fits: Any = Fits(*(fit_of(m) for m in misfits))
+    rig: Any = Rig("inertia", "added")  # no friction: what was tuned of it is left out
+    system, initial = _cooled(fits, tuned(), rig, ("a", "b"))
+    assert fits.asked[0] == {"system": {"inertia": 2.0}, "added": ("a", "b"), "solve": False}
+    assert fits.levels == pytest.approx(levels)
+    assert all(asked["max_iterations"] == SKETCH for asked in fits.asked[1:])
+    assert (system, initial) == ("fitted", ((misfits[len(levels)],),))
+
+
+@pytest.mark.parametrize(
+    ("fits", "found", "asked"),
+    [
+        ([fit_of(cost=51.0)], "sketch", 1),
+        ([fit_of(cost=49.0)], "settled", 1),
+        ([fit_of(cost=49.0, converged=False), fit_of(cost=30.0)], "settled", 2),
+        ([NumericalError("no")], None, 1),
+    ],
+)
+def test_a_sketch_that_reaches_its_goal_is_finished(
+    fits: list[Any], found: str | None, asked: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
+    monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
+    fitter: Any = Fits(*fits)
+    made: Any = refits._fit(fitter, tuned(), {"b": {}}, None, pace=None)
+    assert (made[0] if made else None) == found
+    assert len(fitter.asked) == asked
+    assert fitter.asked[0]["added"] == ("a", "b")
+    assert (fitter.asked[0]["max_iterations"], fitter.asked[0]["goal"]) == (SKETCH, 50.0)
+    if asked == 2:
+        assert (fitter.asked[1]["system"], fitter.asked[1]["max_iterations"]) == ("fitted", 40)
+
+
+@pytest.mark.parametrize(
+    ("trapped", "simulated", "left", "nominal"),
+    [(True, True, 5.0, [False, False, True]), (True, True, 1.2, [False, False]), (False, True, 5.0, [False, False]),
+     (True, False, 5.0, [True]), (False, False, 5.0, [])],
+)  # fmt: skip
+def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_those_may_be_trapped(
+    trapped: bool, simulated: bool, left: float, nominal: list[bool], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Unless a fit comes near the floor; a candidate that was never simulated has no other start."""
+    tried = []
+
+    def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
+        tried.append(from_nominal)
+        return SimpleNamespace(mean_square=left, evidence=float(len(tried)))
+
+    monkeypatch.setattr(refits, "_fit", fit)
+    monkeypatch.setattr(refits, "_may_be_trapped", lambda *_: trapped)
+    monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
+    nothing: Any = None
+    found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, simulated), pace=None)
+    assert tried == nominal
+    assert (found is None) == (not nominal)
