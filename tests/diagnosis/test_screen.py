@@ -1,12 +1,16 @@
 """The screen of candidates: most promising first, started at a shape of its grid."""
 
 from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+import tendonlab as tl
 from tendonlab import _core
 from tendonlab.diagnosis.search import screen
 from tendonlab.diagnosis.search.workshop import Workshop
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Fitter
@@ -28,3 +32,39 @@ def test_fits_start_at_a_multiple_of_the_typical_shape(
     (start,) = screen.screen(fitter, nominal, "joint:stribeck").starts
     typical = start_of(nominal.system, "joint:stribeck", fitter.case.scales)
     assert start["joint_stribeck_velocity"] == pytest.approx(3.0 * typical["joint_stribeck_velocity"])
+
+
+def test_a_whole_friction_is_always_refitted_from_several_first_shapes() -> None:
+    """No gain is expected of it, so it counts as much as any model can gain."""
+    info = tl.system_info("friction_map")
+    effect = "contact:static_lugre"
+    rows = [info.parameter(name) for name in info.effect(effect).parameters]
+    amplitudes = [p.name for p in rows if p.amplitude]
+    first = next(p.name for p in rows if p.purpose == "shape")
+    effects = ("contact:load_and_ratio",)
+    system = tl.System(
+        kind="friction_map", parameters=dict.fromkeys(info.effect(effects[0]).parameters, 0.5), effects=effects
+    )
+    scale = SimpleNamespace(of=lambda dimension: 2.0)
+    case: Any = SimpleNamespace(scales={"contact": scale})
+    base: Any = SimpleNamespace(system=system, cost=123.0)
+    found = screen._whole(case, base, effect, rows)
+    assert (found.effect, found.gain, found.visibility, found.simulated) == (effect, 123.0, 123.0, True)
+    typical = start_of(system, effect, case.scales)
+    assert [start[first] / typical[first] for start in found.starts] == pytest.approx([0.3, 1.0, 3.0])
+    for start in found.starts:
+        for name in amplitudes:
+            assert start[name] == pytest.approx(2.0 * info.parameter(name).typical)
+
+
+def test_a_candidate_that_no_simulation_bears_starts_at_half_its_typical_size(
+    fitter: Fitter, nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: Any) -> None:
+        raise NumericalError("no")
+
+    monkeypatch.setattr(screen, "_score", fails)
+    found = screen.screen(fitter, nominal, "actuation:offset")
+    assert (found.gain, found.visibility, found.simulated) == (0.0, 0.0, False)
+    p = nominal.system.info.parameter("actuation_offset")
+    assert found.starts == ({"actuation_offset": pytest.approx(0.5 * screen._unit(fitter.case, p))},)

@@ -1,0 +1,51 @@
+"""The table of errors effect by effect, and the proposals, as blocks of the report."""
+
+from types import SimpleNamespace
+from typing import Any
+
+from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.report.sections.computation import _plainly, _steps
+from tendonlab.report.sections.next_steps import next_steps
+
+
+def test_errors_are_listed_step_by_step_in_one_unit() -> None:
+    details = {
+        "steps": [
+            {"effects": [], "rms": {"joint_angle": 0.022, "motor_torque": 0.5}},
+            {"effects": ["joint:stribeck"], "rms": {"joint_angle": 0.0013, "motor_torque": 0.25}},
+        ]
+    }
+    diagnosis: Any = SimpleNamespace(
+        details=details, units={"joint_angle": "rad", "motor_torque": "N*m"}, system="two_inertia"
+    )
+    (table,) = _steps(diagnosis)
+    shown: Any = table
+    assert list(shown.columns) == ["Effects added", "Joint angle (mrad)", "Motor torque (mN·m)"]
+    assert [[cell.text for cell in row] for row in shown.rows] == [
+        ["None (refitted)", "22", "500"],
+        ["Stribeck friction at the joint", "1.3", "250"],
+    ]
+    assert shown.right == frozenset({1, 2})
+    diagnosis.details = {}
+    assert _steps(diagnosis) == []
+
+
+def test_settings_are_said_plainly() -> None:
+    assert (
+        _plainly({"over": "experiments", "sizes": [1, 2.5], "none": []}) == "over experiments; sizes 1, 2.5; none none"
+    )
+    assert [_plainly(value) for value in (True, False, None)][:2] == ["yes", "no"]
+
+
+def test_proposals_name_what_they_separate_and_by_how_much(with_effect: Diagnosis) -> None:
+    blocks: list[Any] = next_steps(with_effect)
+    points = next(block for block in blocks if hasattr(block, "items"))
+    ((what, purpose),) = points.items
+    assert what == "Slow joint reversals at 0.01–0.2 rad/s"
+    assert "Stribeck friction at the joint" in purpose
+    assert "35" in purpose
+    assert points.style == "numbered"
+    nothing: Any = SimpleNamespace(next_experiments=())
+    (only,) = next_steps(nothing)
+    told: Any = only
+    assert told.text == "No further measurement is proposed."
