@@ -181,3 +181,81 @@ def test_lanes_do_not_see_one_another():
 def test_step_must_divide_the_sample_time():
     with pytest.raises(ValueError, match="whole fraction"):
         push(lanes(), 0.0, seconds=0.1, step=3e-4)
+
+
+@pytest.mark.parametrize("backlash", [0.0, 0.01])
+@pytest.mark.parametrize("known", [0.0, 0.4])
+def test_a_run_begins_in_equilibrium_with_its_controller(backlash: float, known: float) -> None:
+    """Whatever gravity, load, actuator and sensor do: nothing moves before the reference does."""
+    rig = lanes(
+        2, gravity_torque=1.1, load_offset=known, cable_backlash=backlash, actuation_offset=0.02,
+        actuation_gain_error=0.2, cable_damping=0.05, joint_coulomb=1e-9, motor_viscous=1e-4,
+        **{"sensor.motor_angle_bias": 0.3},
+    )  # fmt: skip
+    reference = np.tile([5.0, -8.0], (400, 1))
+    gains = Controller(kp=np.full(2, 0.5), kd=np.full(2, 0.018), limit=np.full(2, 0.8))
+    run = simulate(rig, Scene(reference=reference, controller=gains), step=1e-4)
+    assert np.abs(run.state[:2] - run.state[:2, :1]).max() < 1e-4
+    motor, joint = run.state[:2, 0]
+    torque = 1.1 * np.sin(joint) - known
+    assert np.abs(torque).min() > 0.05
+    assert run.outputs[2, 0] == pytest.approx(torque, abs=1e-4)
+    assert run.command[0] * 1.2 + 0.02 == pytest.approx(torque / 10.0, abs=1e-5)
+    assert motor / 10.0 - joint == pytest.approx(torque / 50.0 + np.sign(torque) * backlash / 2.0, abs=1e-5)
+
+
+def test_a_torque_that_is_known_acts_on_the_joint() -> None:
+    """As a load that is constant does, sample by sample."""
+    torque = np.repeat(0.05 * np.sin(0.1 * np.arange(250))[:, None], 2, axis=1)
+    run = push(lanes(2, load_offset=[0.0, 0.03]), 0.0, seconds=0.5, known=torque)
+    momentum = 10.0 * 1.2e-4 * run.state[2] + 0.02 * run.state[3]
+    given = np.concatenate([[0.0], np.cumsum(torque[:-1, 0])]) * 0.002
+    np.testing.assert_allclose(momentum[:, 0], given, atol=1e-12)
+    np.testing.assert_allclose(momentum[:, 1] - momentum[:, 0], 0.03 * run.time, atol=1e-12)
+
+
+@pytest.mark.parametrize("delay", [0.0007, 0.0053])
+def test_a_late_torque_sensor_reads_the_past_of_the_cable(delay: float) -> None:
+    """The cable of two bodies that swing against each other: a sine whose phase is late."""
+    start = np.array([[0.02], [0.0], [0.0], [0.0]])
+    run, late = (
+        push(lanes(**more), 0.0, seconds=0.2, initial=start, step=2e-5)
+        for more in ({}, {"sensor.cable_torque_delay": delay})
+    )
+    frequency = np.sqrt(50.0 * (1.0 / 0.02 + 1.0 / (100.0 * 1.2e-4)))
+    after = run.time > delay + 0.002
+    expected = 50.0 * 0.002 * np.cos(frequency * (run.time - delay))
+    np.testing.assert_allclose(run.outputs[2, :, 0], 50.0 * 0.002 * np.cos(frequency * run.time), atol=2e-3)
+    np.testing.assert_allclose(late.outputs[2, after, 0], expected[after], atol=2e-3)
+
+
+def test_readings_are_rounded_and_noise_is_added_before() -> None:
+    noise = np.zeros((3, 50, 1))
+    noise[1] = 0.0041
+    resolution = np.array([[0.0], [0.01], [0.0]])
+    start = np.array([[0.0], [0.0], [1.0], [0.1]])
+    run = push(lanes(), 0.0, seconds=0.1, initial=start, noise=noise, resolution=resolution)
+    np.testing.assert_allclose(run.outputs[1, :, 0], 0.01 * np.round((0.1 * run.time + 0.0041) / 0.01), atol=1e-9)
+    np.testing.assert_allclose(run.outputs[0, :, 0], run.time, atol=1e-9)
+
+
+def test_what_settles_is_not_logged_and_strides_skip_samples() -> None:
+    command = np.full((100, 1), 0.05)
+    whole = simulate(lanes(), Scene(reference=command), step=1e-4)
+    part = simulate(lanes(), Scene(reference=command, num_settle=30), step=1e-4, stride=7)
+    np.testing.assert_array_equal(part.state, whole.state[:, 30::7])
+    np.testing.assert_allclose(part.time, 0.014 * np.arange(10))
+    with pytest.raises(ValueError, match="reference has 100 samples: expected more than num_settle = 100"):
+        simulate(lanes(), Scene(reference=command, num_settle=100), step=1e-4)
+
+
+def test_a_controller_differentiates_its_error_and_is_limited() -> None:
+    """From the second sample on: backward over one sample."""
+    reference = np.array([0.0, 0.0, 0.01, 0.01, 5.0])[:, None]
+    gains = Controller(kp=np.array([0.5]), kd=np.array([0.018]), limit=np.array([0.8]))
+    run = simulate(lanes(), Scene(reference=reference, controller=gains), step=1e-4)
+    error = reference[:, 0] - run.outputs[0, :, 0]
+    rate = np.concatenate([[0.0], np.diff(error)]) / 0.002
+    np.testing.assert_allclose(run.command[:, 0], np.clip(0.5 * error + 0.018 * rate, -0.8, 0.8), atol=1e-12)
+    assert run.command[2, 0] == pytest.approx(0.005 + 0.018 * 5.0)
+    assert run.command[4, 0] == 0.8

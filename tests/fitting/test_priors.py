@@ -78,3 +78,62 @@ def test_an_added_effect_starts_at_nothing_with_a_shape_that_is_typical_of_the_r
     assert (shape.name, shape.log, shape.mean, shape.sd) == ("joint_stribeck_velocity", True, 0.0, SHAPE_LOG_SD)
     assert shape.value(0.0) == pytest.approx(0.5 * 0.1)
     assert shape.value(math.log(2.0)) == pytest.approx(2.0 * shape.value(0.0))
+
+
+def believed(**stated: NominalParameter) -> dict[str, Free]:
+    """The free parameters of a joint of known torque constant, with efforts of 3 N·m and speeds of 0.5 rad/s."""
+    values = {"inertia": 0.5, "gravity_torque": 1.0, "torque_constant": 2.0, "coulomb": 0.2, "viscous": 0.4}
+    given = {name: NominalParameter(value) for name, value in values.items()} | stated
+    system = System(
+        kind="rigid_joint",
+        parameters={name: p.value for name, p in given.items()},
+        effects=("joint:coulomb", "joint:viscous"),
+    )
+    free = free_parameters(system, given, {"joint": Scale(effort=3.0, flow=0.5, displacement=1.0)})
+    return {f.name: f for f in free}
+
+
+def test_what_cannot_be_negative_is_believed_in_its_logarithm() -> None:
+    """To 30 %, damping to 60 %, or as stated; a torque constant without sd is taken at its word."""
+    found = believed(coulomb=NominalParameter(0.2, sd=0.01))
+    assert set(found) == {"inertia", "gravity_torque", "coulomb", "viscous"}
+    assert {name: (f.log, f.mean) for name, f in found.items() if name != "gravity_torque"} == dict.fromkeys(
+        ("inertia", "coulomb", "viscous"), (True, 0.0)
+    )
+    assert (found["inertia"].sd, found["viscous"].sd, found["coulomb"].sd) == (0.3, 0.6, pytest.approx(0.05))
+    assert found["inertia"].value(0.0) == pytest.approx(0.5)
+    assert found["inertia"].value(0.1) == pytest.approx(0.5 * math.exp(0.1))
+    assert "torque_constant" in believed(torque_constant=NominalParameter(2.0, sd=0.1))
+    assert "inertia" not in believed(inertia=NominalParameter(0.5, sd=0.0))
+
+
+def test_what_may_have_either_sign_is_believed_as_it_is() -> None:
+    """To 30 % of its value, or to three times what is typical of the rig, if that is more; or as stated."""
+    typical = 3.0 * abs(System(
+        kind="rigid_joint", parameters={"inertia": 1.0, "gravity_torque": 0.5, "torque_constant": 1.0}
+    ).info.parameter("gravity_torque").typical)  # fmt: skip
+    plain = believed(gravity_torque=NominalParameter(100.0))["gravity_torque"]
+    assert (plain.log, plain.sd, plain.scale) == (False, 1.0, pytest.approx(max(30.0, 3.0 * typical)))
+    small = believed(gravity_torque=NominalParameter(0.001))["gravity_torque"]
+    assert small.scale == pytest.approx(max(3.0 * typical, 0.0003))
+    assert small.value(small.mean) == pytest.approx(0.001)
+    known = believed(gravity_torque=NominalParameter(1.0, sd=0.25))["gravity_torque"]
+    assert (known.scale, known.mean, known.sd) == (0.25, 4.0, 1.0)
+
+
+def test_stated_bounds_narrow_those_of_the_parameter() -> None:
+    free = believed(coulomb=NominalParameter(0.2, lower=0.1, upper=0.3), viscous=NominalParameter(0.4, lower=-1.0))
+    assert (free["coulomb"].lower, free["coulomb"].upper) == (0.1, 0.3)
+    assert free["viscous"].lower == 0.0
+
+
+def test_a_zero_that_cannot_be_negative_may_only_grow() -> None:
+    free = believed(viscous=NominalParameter(0.0, sd=0.2))["viscous"]
+    assert (free.log, free.scale, free.mean, free.lower) == (False, 0.2, 0.0, 0.0)
+
+
+def test_the_unit_of_a_dimension_is_made_of_what_was_seen() -> None:
+    of = Scale(effort=6.0, flow=0.5, displacement=2.0)
+    assert [of.of(d) for d in ("effort", "flow", "displacement", "stiffness", "damping", "ratio")] == [
+        6.0, 0.5, 2.0, 3.0, 12.0, 1.0,
+    ]  # fmt: skip
