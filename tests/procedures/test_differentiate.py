@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from tendonlab.errors import ParameterError
 from tendonlab.procedures import velocity
+from tendonlab.procedures.differentiate import window_samples
 
 TIME = np.arange(0.0, 10.0, 1e-3)
 POSITION, SPEED = np.sin(2.0 * TIME), 2.0 * np.cos(2.0 * TIME)
@@ -98,3 +99,23 @@ def test_standstill_has_no_velocity(method: str) -> None:
 def test_bad_input_is_named(time: Any, values: Any, options: dict[str, Any], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
         velocity(time, values, **options)
+
+
+@pytest.mark.parametrize(
+    ("num", "window", "expected"),
+    [
+        (100, None, 21), (22, None, 21), (21, None, 21), (20, None, 19), (7, None, 7),
+        (100, 0.055, 5), (100, 0.2, 21), (100, 0.21, 21), (100, 0.22, 23), (100, 0.99, 99), (101, 1.01, 101),
+    ],
+)  # fmt: skip
+def test_a_window_has_an_odd_number_of_samples_and_fits_into_the_record(
+    num: int, window: float | None, expected: int
+) -> None:
+    """Every 10 ms: as many samples as lie within half a window of the middle one, on both sides."""
+    assert window_samples(0.01 * np.arange(num), window) == expected
+
+
+@pytest.mark.parametrize("window", [0.03, 1.0, -0.1, np.nan])
+def test_a_window_of_fewer_than_five_samples_or_beyond_the_record_is_refused(window: float) -> None:
+    with pytest.raises(ParameterError, match=r"window = .*at least 5 samples and within the record"):
+        window_samples(0.01 * np.arange(100), window)

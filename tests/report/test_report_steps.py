@@ -1,5 +1,6 @@
 """The table of errors effect by effect, and the proposals, as blocks of the report."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -45,6 +46,10 @@ def test_proposals_name_what_they_separate_and_by_how_much(with_effect: Diagnosi
     assert "Stribeck friction at the joint" in purpose
     assert "35" in purpose
     assert points.style == "numbered"
+    assert any("in nats" in getattr(block, "text", "") for block in blocks)
+    (entry,) = with_effect.next_experiments
+    without = replace(with_effect, next_experiments=({**entry, "expected_gain": None},))
+    assert not any("in nats" in getattr(block, "text", "") for block in next_steps(without))
     nothing: Any = SimpleNamespace(next_experiments=())
     (only,) = next_steps(nothing)
     told: Any = only
