@@ -158,7 +158,7 @@ def effect() -> Diagnosis:
         ),
         warnings=("no repeats: the floor is estimated from the high-frequency part of the residuals",),
         units={"joint_angle": "rad", "motor_angle": "rad", "motor_torque": "N*m"},
-        overlay=overlay({"motor_angle": 4e-4, "joint_angle": 1e-3}),
+        overlays=(overlay({"motor_angle": 4e-4, "joint_angle": 1e-3}),),
         where_map=(where_map(),),
         held_out=pd.DataFrame(
             {"nominal": [31.0, 26.4], "refitted": [19.2, 22.7], "with_effect": [1.6, 2.1]},
@@ -194,7 +194,7 @@ def no_gap() -> Diagnosis:
         gap={"joint_angle": {"noise_floor": 1e-3, "nominal": 1.02e-3, "refitted": 1.01e-3, "with_effect": 1.01e-3}},
         where={"signals": [], "elements": [], "regimes": []},
         where_map=(),
-        overlay=None,
+        overlays=(),
         held_out=pd.DataFrame(),
         indistinguishable=(),
         invisible=(),
@@ -224,7 +224,7 @@ def parameters_only() -> Diagnosis:
             "effect": 0.06,
             "unknown_effect": 0.04,
         },
-        overlay=overlay({"joint_angle": 1e-3}),
+        overlays=(overlay({"joint_angle": 1e-3}),),
     )
 
 
@@ -284,4 +284,4 @@ def with_effect() -> Diagnosis:
 @pytest.fixture
 def undrawn() -> Diagnosis:
     """The diagnosis that names an effect, without the figures that take long to draw: for tests that read words."""
-    return replace(effect(), overlay=None, where_map=())
+    return replace(effect(), overlays=(), where_map=())

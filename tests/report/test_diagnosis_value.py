@@ -21,15 +21,14 @@ def test_a_copy_equals_it_and_reports_the_same(diagnosis: Diagnosis, copied: Any
 
 
 def test_any_field_makes_it_differ(with_effect: Diagnosis) -> None:
-    overlay, table = with_effect.overlay, with_effect.table
-    assert overlay is not None
+    (overlay,), table = with_effect.overlays, with_effect.table
     assert table is not None
     moved = {name: values + 1e-12 for name, values in overlay.refitted.items()}
     first = replace(with_effect.effects[0], held_out_gain={"mean": 812.0, "se": 91.0})
     for changes in (
         {"seconds": with_effect.seconds + 1.0},
-        {"overlay": replace(overlay, refitted=moved)},
-        {"overlay": None},
+        {"overlays": (replace(overlay, refitted=moved),)},
+        {"overlays": ()},
         {"where_map": with_effect.where_map[:-1]},
         {"effects": (first, *with_effect.effects[1:])},
         {"table": replace(table, frame=table.frame.iloc[::-1])},

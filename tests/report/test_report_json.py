@@ -83,6 +83,17 @@ def test_an_overlay_of_another_length_is_refused() -> None:
     time, short = np.arange(4.0), {"joint_angle": np.zeros(3)}
     with pytest.raises(ParameterError, match=r"measured\['joint_angle'\] has shape \(3,\): expected \(4,\)"):
         Overlay(name="a", time=time, measured=short, nominal=short, refitted=short, with_effect=short, floor={})
+    with pytest.raises(ParameterError, match=r"inputs\['motor_torque'\] has shape \(3,\): expected \(4,\)"):
+        Overlay(
+            name="a",
+            time=time,
+            measured={},
+            nominal={},
+            refitted={},
+            with_effect={},
+            floor={},
+            inputs={"motor_torque": np.zeros(3)},
+        )
 
 
 def test_effect_without_shrinkage_writes_null() -> None:

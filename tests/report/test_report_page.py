@@ -90,7 +90,7 @@ def test_without_figures_there_are_two_files(with_effect: Diagnosis, tmp_path: P
 
 
 def test_a_report_that_fails_leaves_the_earlier_one(with_effect: Diagnosis, tmp_path: Path) -> None:
-    bare = replace(with_effect, overlay=None, where_map=())
+    bare = replace(with_effect, overlays=(), where_map=())
     bare.report(tmp_path, figures=False)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     with pytest.raises(ParameterError, match="complex"):
@@ -109,8 +109,7 @@ def test_a_folder_is_made_before_there_is_anything_to_write(tmp_path: Path) -> N
 
 
 def test_text_of_users_is_escaped(with_effect: Diagnosis, tmp_path: Path) -> None:
-    run = with_effect.overlay
-    assert run is not None
+    (run,) = with_effect.overlays
     signals = {
         stage: {NASTY: getattr(run, stage)["joint_angle"]}
         for stage in ("measured", "nominal", "refitted", "with_effect")
@@ -121,7 +120,7 @@ def test_text_of_users_is_escaped(with_effect: Diagnosis, tmp_path: Path) -> Non
         warnings=(NASTY,),
         gap={NASTY: with_effect.gap["joint_angle"]},
         units={NASTY: NASTY},
-        overlay=replace(run, name=NASTY, floor={NASTY: 1e-3}, **signals),
+        overlays=(replace(run, name=NASTY, floor={NASTY: 1e-3}, **signals),),
         next_experiments=({"description": NASTY, "separates": [NASTY], "expected_gain": None},),
         table=SideTable(title=NASTY, note=NASTY, frame=pd.DataFrame({NASTY: [NASTY]})),
         details={NASTY: NASTY},
@@ -156,7 +155,7 @@ def test_empty_results_still_make_a_page(with_effect: Diagnosis, tmp_path: Path)
         selected=(),
         explained=None,
         shrinkage={"from_nominal": None, "from_refitted": None},
-        overlay=None,
+        overlays=(),
         where_map=(),
         held_out=pd.DataFrame(),
         indistinguishable=(),
@@ -190,13 +189,23 @@ def test_a_selected_effect_is_listed_however_many_candidates_there_are(with_effe
     assert f"<code>{chosen}</code>" in effects_table(replace(with_effect, effects=many, selected=(chosen,)))
 
 
+def test_all_held_out_runs_are_on_the_page_all_but_the_worst_folded(with_effect: Diagnosis, tmp_path: Path) -> None:
+    (run,) = with_effect.overlays
+    inputs = {"motor_torque": np.zeros_like(run.time)}
+    text, _ = read(replace(with_effect, overlays=(run, replace(run, name="push", inputs=inputs))), tmp_path)
+    folded = text[text.index("<details>") : text.index("</details>")]
+    assert "Held-out experiment push, drawn" in folded
+    assert "At the bottom: the logged inputs." in folded
+    assert "Held-out experiment swing-7" not in folded
+    assert "Held-out experiment swing-7: measurements" in text
+
+
 def test_caption_says_what_the_overlay_leaves_out(with_effect: Diagnosis, tmp_path: Path) -> None:
-    run = with_effect.overlay
-    assert run is not None
+    (run,) = with_effect.overlays
     names = [f"tension_{index}" for index in range(6)]
     swing = np.sin(60.0 * run.time)
     parts = {stage: dict.fromkeys(names, swing) for stage in ("measured", "nominal", "refitted", "with_effect")}
-    long = replace(with_effect, overlay=replace(run, floor=dict.fromkeys(names, 0.1), **parts))
+    long = replace(with_effect, overlays=(replace(run, floor=dict.fromkeys(names, 0.1), **parts),))
     text, _ = read(long, tmp_path)
     assert re.search(r"Shown: 0 to [\d.]+ s of the run.* The 4 outputs that carry most of the gap are drawn", text)
     assert "Shown:" not in read(with_effect, tmp_path)[0]

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from tendonlab.errors import ParameterError
 from tendonlab.report.diagnosis import Diagnosis
-from tendonlab.report.figures import draw_all
+from tendonlab.report.figures import draw_all, shown_runs
 from tendonlab.report.plot import gap_bars, overlay, ranked_effects, where_map
 from tendonlab.report.plot.runs import telling_window
 
@@ -81,11 +81,10 @@ def test_overlay_has_points_lines_and_a_floor_band(with_effect: Diagnosis) -> No
 
 
 def test_lines_keep_the_peaks_when_thinned(with_effect: Diagnosis) -> None:
-    run = with_effect.overlay
-    assert run is not None
+    (run,) = with_effect.overlays
     spiked = run.refitted["joint_angle"].copy()
     spiked[777] = 5.0
-    changed = replace(with_effect, overlay=replace(run, refitted={**run.refitted, "joint_angle": spiked}))
+    changed = replace(with_effect, overlays=(replace(run, refitted={**run.refitted, "joint_angle": spiked}),))
     upper, _ = overlay(changed, tuple(Figure().subplots(2, 1)), signal="joint_angle")
     assert max(line.get_ydata().max() for line in upper.lines if line.get_label() == "Refitted") == 5.0
 
@@ -95,16 +94,37 @@ def test_without_a_selected_effect_its_line_is_not_drawn(with_effect: Diagnosis)
     assert "With effect" not in [line.get_label() for line in upper.lines]
 
 
+def test_every_held_out_run_can_be_drawn_with_its_inputs(with_effect: Diagnosis) -> None:
+    (run,) = with_effect.overlays
+    push = np.where(run.time < 6.0, 0.5, -2.0)
+    two = (run, replace(run, name="push", inputs={"motor_torque": push}))
+    drawn = draw_all(replace(with_effect, overlays=two, units={**with_effect.units, "motor_torque": "N*m"}))
+    assert {"overlay", "overlay-2"} <= set(drawn)
+    assert len(drawn["overlay"].figure.axes) == 2 * len(run.measured)
+    *_, last = drawn["overlay-2"].figure.axes
+    assert (last.get_ylabel(), last.get_xlabel()) == ("Motor torque (N·m)", "Time (s)")
+    assert set(last.lines[0].get_ydata()) == {0.5, -2.0}
+    upper, _ = overlay(replace(with_effect, overlays=two), tuple(Figure().subplots(2, 1)), experiment="push")
+    assert upper.get_ylabel().startswith("Motor angle")
+
+
+def test_at_most_twelve_held_out_runs_are_drawn(with_effect: Diagnosis) -> None:
+    (run,) = with_effect.overlays
+    many = tuple(replace(run, name=f"run-{place}") for place in range(14))
+    assert [one.name for one in shown_runs(replace(with_effect, overlays=many))] == [f"run-{k}" for k in range(12)]
+
+
 def test_overlay_names_what_is_missing(with_effect: Diagnosis) -> None:
     with pytest.raises(ParameterError, match="signal = 'torque': expected one of motor_angle, joint_angle"):
         overlay(with_effect, signal="torque")
-    with pytest.raises(ParameterError, match="overlay = None"):
-        overlay(replace(with_effect, overlay=None))
+    with pytest.raises(ParameterError, match="experiment = 'jump': expected one of swing-7"):
+        overlay(with_effect, experiment="jump")
+    with pytest.raises(ParameterError, match="overlays: none"):
+        overlay(replace(with_effect, overlays=()))
 
 
 def test_a_long_run_is_cut_to_where_the_refitted_residual_is_large(with_effect: Diagnosis) -> None:
-    run = with_effect.overlay
-    assert run is not None
+    (run,) = with_effect.overlays
     assert telling_window(run) is None
     time = np.arange(0.0, 100.0, 0.01)
     swing = np.sin(2 * np.pi * time)
@@ -138,7 +158,7 @@ def test_new_axes_of_a_where_map_have_a_colour_bar(with_effect: Diagnosis) -> No
 
 def test_svg_keeps_text_as_text(diagnosis: Diagnosis) -> None:
     pictures = draw_all(diagnosis)
-    assert ("overlay" in pictures) is (diagnosis.overlay is not None)
+    assert ("overlay" in pictures) is bool(diagnosis.overlays)
     assert "Held-out RMS error / noise floor" in pictures["gap"].svg
     assert all(picture.png.startswith(b"\x89PNG") for picture in pictures.values())
 

@@ -69,12 +69,13 @@ class Columns(Block):
 
 @dataclass(frozen=True, kw_only=True)
 class Figure(Block):
-    """The picture of this name, where there is one."""
+    """The picture of this name, where there is one. `folded`: the line that it unfolds from; empty: it is open."""
 
     kind = "figure"
     name: str
     caption: str = ""
     small: bool = False
+    folded: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

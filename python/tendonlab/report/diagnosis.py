@@ -67,7 +67,8 @@ class Overlay(EqualByFields):
     """One held-out experiment with its three predictions.
 
     `time` has shape (n,), s; the arrays per signal have shape (n,) in its unit, NaN where not measured. `floor` is
-    the noise floor of each signal, RMS in its unit. Raises ParameterError if an array has another shape.
+    the noise floor of each signal, RMS in its unit. `inputs`: what was logged of the inputs, (n,) each. Raises
+    ParameterError if an array has another shape.
     """
 
     name: str
@@ -77,8 +78,11 @@ class Overlay(EqualByFields):
     refitted: Mapping[str, Floats]
     with_effect: Mapping[str, Floats]
     floor: Mapping[str, float]
+    inputs: Mapping[str, Floats] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        for name, values in self.inputs.items():
+            _require_shape(f"inputs[{name!r}]", values, np.shape(self.time))
         for signal in self.measured:
             for stage in ("measured", *STAGES):
                 _require_shape(f"{stage}[{signal!r}]", getattr(self, stage).get(signal), np.shape(self.time))
@@ -126,7 +130,8 @@ class Diagnosis(EqualByFields):
     `gap` is by output, RMS in its unit: noise_floor, nominal, refitted, with_effect, on held-out experiments. `units`:
     unit of every signal and coordinate. `held_out`: one row per held-out experiment, columns nominal, refitted,
     with_effect: the gap there, pooled over outputs, in noise floors. `data`: problems of the logs, worst first, each
-    with problem, signal, experiment, detail and blocks. `split`: names under "train" and "test". `details`: whatever
+    with problem, signal, experiment, detail and blocks. `overlays`: every held-out experiment, the one that tuning
+    leaves worst first. `split`: names under "train" and "test". `details`: whatever
     else says how it was computed. Raises ParameterError where a part of the contract is missing or the verdict is
     unknown.
     """
@@ -155,7 +160,7 @@ class Diagnosis(EqualByFields):
     split: Mapping[str, Sequence[str]] = field(default_factory=dict)
     details: Mapping[str, Any] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict, metadata=_DRAWN)
-    overlay: Overlay | None = field(default=None, metadata=_DRAWN)
+    overlays: tuple[Overlay, ...] = field(default=(), metadata=_DRAWN)
     where_map: tuple[WhereMap, ...] = field(default=(), metadata=_DRAWN)
     table: SideTable | None = field(default=None, metadata=_DRAWN)
 

@@ -14,7 +14,7 @@ from markupsafe import Markup, escape
 
 from tendonlab.report.plot import gap_bars, overlay, ranked_effects, where_map
 from tendonlab.report.plot.effects import height
-from tendonlab.report.plot.runs import telling_window
+from tendonlab.report.plot.runs import draw_input, telling_window
 from tendonlab.report.plot.style import COLOURS, FIGURE, INK, MUTED, RULE
 from tendonlab.report.plot.where import colour_bar, shared_scale
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from tendonlab.report.diagnosis import Diagnosis
+    from tendonlab.report.diagnosis import Diagnosis, Overlay
 
 _ALTS = {
     "gap": "Held-out error of each output over its noise floor",
@@ -32,6 +32,8 @@ _ALTS = {
 }
 LARGEST_SVG = 400_000  # bytes; beyond, the page embeds the PNG
 MOST_DRAWN = 4  # outputs drawn; the tables list all
+MOST_INPUTS = 2  # inputs drawn below them
+MOST_RUNS = 12  # held-out experiments drawn
 MOST_MAPS = 2  # where maps, the likeliest elements first: ports of one axis move together and look alike
 _PAGE_COLOURS = {
     INK: "var(--ink)",
@@ -84,17 +86,28 @@ def embed(svg: str, png: Callable[[], bytes], *, name: str, alt: str) -> Markup:
 
 
 def draw_all(diagnosis: Diagnosis) -> dict[str, Picture]:
-    """Every figure for which the diagnosis holds data, by name: gap, overlay, where, effects."""
+    """Every figure for which the diagnosis holds data, by name: gap, overlay, overlay-2 …, where, effects."""
     if not diagnosis.effects and all(errors["refitted"] is None for errors in diagnosis.gap.values()):
         return {}  # nothing was fitted; loading matplotlib takes longer than the check of the logs
     import matplotlib
 
-    draw = {"gap": _gap, "overlay": _overlay, "where": _where, "effects": _effects}
     with matplotlib.rc_context(FIGURE):
-        drawn = {name: function(diagnosis) for name, function in draw.items()}
+        drawn = {"gap": _gap(diagnosis), "where": _where(diagnosis), "effects": _effects(diagnosis)}
+        drawn |= {overlay_name(k): _overlay(diagnosis, run) for k, run in enumerate(shown_runs(diagnosis))}
+    alts = {name: _ALTS[name.partition("-")[0]] for name in drawn}
     return {
-        name: Picture(name=name, alt=_ALTS[name], figure=figure) for name, figure in drawn.items() if figure is not None
+        name: Picture(name=name, alt=alts[name], figure=figure) for name, figure in drawn.items() if figure is not None
     }
+
+
+def shown_runs(diagnosis: Diagnosis) -> list[Overlay]:
+    """The held-out experiments that are drawn, the one that tuning leaves worst first."""
+    return [run for run in diagnosis.overlays if run.measured][:MOST_RUNS]
+
+
+def overlay_name(place: int) -> str:
+    """Name of the figure of one of the held-out experiments drawn."""
+    return "overlay" if place == 0 else f"overlay-{place + 1}"
 
 
 def _gap(diagnosis: Diagnosis) -> Figure | None:
@@ -107,21 +120,19 @@ def _gap(diagnosis: Diagnosis) -> Figure | None:
     return figure
 
 
-def _overlay(diagnosis: Diagnosis) -> Figure | None:
+def _overlay(diagnosis: Diagnosis, run: Overlay) -> Figure:
     from matplotlib.figure import Figure
 
-    run = diagnosis.overlay
-    if run is None or not run.measured:
-        return None
-    shares = {entry["signal"]: entry["share"] for entry in diagnosis.where["signals"]}
-    carrying = sorted(run.measured, key=lambda signal: -(shares.get(signal) or 0.0))[:MOST_DRAWN]
-    signals = [signal for signal in run.measured if signal in carrying]
-    figure = Figure(figsize=(6.2, 0.5 + 2.8 * len(signals)), layout="constrained")
-    grid = figure.subplots(2 * len(signals), 1, sharex=True, squeeze=False, height_ratios=[2.1, 1] * len(signals))
+    signals, window, inputs = _carrying(diagnosis, run), telling_window(run), list(run.inputs)[:MOST_INPUTS]
+    heights = [2.1, 1.0] * len(signals) + [1.0] * len(inputs)
+    figure = Figure(figsize=(6.2, 0.5 + 2.8 * len(signals) + 0.95 * len(inputs)), layout="constrained")
+    grid = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)
     axes: list[Axes] = list(grid[:, 0])
     for index, signal in enumerate(signals):
         pair = axes[2 * index], axes[2 * index + 1]
-        overlay(diagnosis, pair, signal=signal, window=telling_window(run))
+        overlay(diagnosis, pair, signal=signal, window=window, experiment=run.name)
+    for ax, name in zip(axes[2 * len(signals) :], inputs, strict=True):
+        draw_input(ax, run, name, unit=diagnosis.units.get(name, ""), window=window)
     for ax in axes[:-1]:
         ax.set_xlabel("")
     figure.align_ylabels(axes)
@@ -129,6 +140,13 @@ def _overlay(diagnosis: Diagnosis) -> Figure | None:
     handles, labels = parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     figure.legend(handles, labels, ncols=5, loc="outside upper left", handlelength=1.6, columnspacing=1.4)
     return figure
+
+
+def _carrying(diagnosis: Diagnosis, run: Overlay) -> list[str]:
+    """Outputs that carry most of the gap, in the order in which they were measured."""
+    shares = {entry["signal"]: entry["share"] for entry in diagnosis.where["signals"]}
+    carrying = sorted(run.measured, key=lambda signal: -(shares.get(signal) or 0.0))[:MOST_DRAWN]
+    return [signal for signal in run.measured if signal in carrying]
 
 
 def _where(diagnosis: Diagnosis) -> Figure | None:

@@ -14,13 +14,14 @@ from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
 from tendonlab.diagnosis.answer.next_experiments import advise
+from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, decide
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
-from tendonlab.report.diagnosis import Diagnosis, Overlay
+from tendonlab.report.diagnosis import Diagnosis
 
 
 def answer(
@@ -71,7 +72,7 @@ def answer(
             *notes.not_improved(held_out, search.selected),
         ),
         units=notes.units(case),
-        overlay=_overlay(case, stages, floor, judged),
+        overlays=overlays(case, stages, floor, judged),
         where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),
         held_out=held_out,
         table=inverse_dynamics(case, [model.system for model in search.path], judged),
@@ -145,27 +146,6 @@ def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
         for group in ties
         for known in confusions.among(group)
     ]
-
-
-def _overlay(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> Overlay:
-    """The held-out experiment on which the refitted simulator is worst."""
-    scale = floor.rms[case.measured, None]
-    squares = [np.nanmean(np.square(r[case.measured] / scale)) for r in stages["refitted"].residuals]
-    k = int(np.argmax(squares))
-    ready = case.prepared[judged[k]]
-
-    def by_signal(rows: np.ndarray) -> dict[str, np.ndarray]:
-        return {case.outputs[c]: rows[c] for c in case.measured}
-
-    return Overlay(
-        name=ready.name,
-        time=np.asarray(case.experiments[judged[k]].time),
-        measured=by_signal(ready.measured),
-        nominal=by_signal(stages["nominal"].outputs[k]),
-        refitted=by_signal(stages["refitted"].outputs[k]),
-        with_effect=by_signal(stages["with_effect"].outputs[k]),
-        floor={case.outputs[c]: float(floor.rms[c]) for c in case.measured},
-    )
 
 
 def _per_experiment(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> pd.DataFrame:

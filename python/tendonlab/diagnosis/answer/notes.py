@@ -113,9 +113,11 @@ def replay(case: Case) -> dict[str, Any]:
 
 
 def units(case: Case) -> dict[str, str]:
-    """Unit of every output and of every coordinate of the where-map."""
-    info, axis = case.system.info, case.system.axis
-    known = {s.name: unit(s.dimension, axis) for s in info.outputs}
+    """Unit of every signal and of every coordinate of the where-map."""
+    info, axis, controller = case.system.info, case.system.axis, case.system.controller
+    known = {s.name: unit(s.dimension, axis) for s in info.signals}
+    if controller is not None:
+        known[controller.reference] = known[controller.measured]
     for port in info.ports:
         own = info.element(port.element).axis or axis
         known |= {f"{port.name}_{q}": unit(where.dimension(port, q), own) for q in where.COORDINATES}

@@ -30,19 +30,19 @@ def overlay(
     *,
     signal: str | None = None,
     window: tuple[float, float] | None = None,
+    experiment: str | None = None,
 ) -> tuple[Axes, Axes]:
     """Measured points and predicted lines (upper axes), residuals with the noise floor as a band (lower axes).
 
     `ax`: the upper and the lower axes; `signal`: the first one by default; `window`: (from, to) in s, the whole run by
-    default. Raises ParameterError if the diagnosis has no overlay or not this signal."""
-    run = diagnosis.overlay
-    if run is None or not run.measured:
-        raise ParameterError("overlay = None: expected a diagnosis with a held-out experiment")
+    default; `experiment`: the held-out one that tuning leaves worst by default. Raises ParameterError if the diagnosis
+    has no held-out experiment, not this one or not this signal."""
+    run = _chosen(diagnosis, experiment)
     signal = next(iter(run.measured)) if signal is None else signal
     if signal not in run.measured:
         raise ParameterError(f"signal = {signal!r}: expected one of {', '.join(run.measured)}")
     upper, lower = _two_axes() if ax is None else ax
-    seen = np.full(len(run.time), True) if window is None else (run.time >= window[0]) & (run.time <= window[1])
+    seen = _within(run, window)
     unit = diagnosis.units.get(signal, "")
     stages = [stage for stage in STAGES if stage != "with_effect" or diagnosis.selected]
     _draw_signal(upper, run, signal=signal, stages=stages, seen=seen)
@@ -53,6 +53,35 @@ def overlay(
         upper.tick_params(labelbottom=False)
         upper.legend(ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2, frameon=False)
     return upper, lower
+
+
+def draw_input(ax: Axes, run: Overlay, name: str, *, unit: str, window: tuple[float, float] | None = None) -> None:
+    """What was logged of an input over the time of the run, or the `window` (from, to) of it, s."""
+    seen = _within(run, window)
+    ax.plot(*_thin(run.time[seen], run.inputs[name][seen]), color=INK, lw=0.9)
+    ax.set_ylabel(label(name, unit))
+    ax.set_xlabel("Time (s)")
+    ax.margins(x=0.01)
+    tidy(ax, grid="both")
+
+
+def _chosen(diagnosis: Diagnosis, experiment: str | None) -> Overlay:
+    runs = [run for run in diagnosis.overlays if run.measured]
+    if not runs:
+        raise ParameterError("overlays: none; expected a diagnosis with a held-out experiment")
+    if experiment is None:
+        return runs[0]
+    named = {run.name: run for run in runs}
+    if experiment not in named:
+        raise ParameterError(f"experiment = {experiment!r}: expected one of {', '.join(named)}")
+    return named[experiment]
+
+
+def _within(run: Overlay, window: tuple[float, float] | None) -> NDArray[np.bool_]:
+    """Samples within the window (from, to), s; all of them without one."""
+    if window is None:
+        return np.full(len(run.time), True)
+    return (run.time >= window[0]) & (run.time <= window[1])
 
 
 def telling_window(run: Overlay) -> tuple[float, float] | None:

@@ -8,22 +8,23 @@ from typing import Any
 
 from tendonlab.report import numbers
 from tendonlab.report.blocks import Block, Cell, Figure, Table, Text
-from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.report.diagnosis import Diagnosis, Overlay
 from tendonlab.report.words import STAGES, capital, phrases, words
 
 
 def extent(diagnosis: Diagnosis) -> list[Block]:
-    """Errors of each output, one experiment drawn, all experiments listed, and a further table where there is one."""
+    """Errors of each output, the worst experiment drawn, all experiments listed and folded away, and a further table
+    where there is one."""
     blocks: list[Block] = [Figure(name="gap")]
     if diagnosis.gap:
         blocks += [_errors(diagnosis), Text(text=_stages_explained(diagnosis), note=True)]
     else:
         blocks.append(Text(text="No output could be scored."))
-    if diagnosis.overlay is not None:
-        blocks.append(Figure(name="overlay", caption=_overlay_caption(diagnosis)))
+    runs = _runs(diagnosis)
+    blocks += runs[:1]
     if len(diagnosis.held_out):
         blocks += [_experiments(diagnosis), Text(text=_EXPERIMENTS, note=True)]
-    return [*blocks, *_side_table(diagnosis)]
+    return [*blocks, *runs[1:], *_side_table(diagnosis)]
 
 
 _EXPERIMENTS = (
@@ -62,21 +63,33 @@ def _stages_explained(diagnosis: Diagnosis) -> str:
     )
 
 
-def _overlay_caption(diagnosis: Diagnosis) -> str:
+def _runs(diagnosis: Diagnosis) -> list[Figure]:
+    """The held-out experiments, all but the first one folded."""
+    from tendonlab.report.figures import overlay_name, shown_runs
+
+    return [
+        Figure(
+            name=overlay_name(place),
+            caption=_overlay_caption(run),
+            folded="" if place == 0 else f"Held-out experiment {run.name}, drawn",
+        )
+        for place, run in enumerate(shown_runs(diagnosis))
+    ]
+
+
+def _overlay_caption(run: Overlay) -> str:
     """What the figure shows of the held-out experiment, and what it leaves out."""
     from tendonlab.report.figures import MOST_DRAWN
     from tendonlab.report.plot.runs import telling_window
 
-    run = diagnosis.overlay
-    if run is None or not run.measured:
-        return ""
     window, hidden = telling_window(run), len(run.measured) - MOST_DRAWN
     part = f" Shown: {numbers.span(window)} s of the run, where the refitted residual is largest." if window else ""
     most = f" The {MOST_DRAWN} outputs that carry most of the gap are drawn." if hidden > 0 else ""
+    inputs = " At the bottom: the logged inputs." if run.inputs else ""
     return (
         f"Held-out experiment {run.name}: measurements as points, predictions as lines. Below each signal: the "
         "residuals, with the noise floor as a band. A nominal residual far larger than the others is cut off."
-        f"{part}{most}"
+        f"{inputs}{part}{most}"
     )
 
 
