@@ -102,7 +102,7 @@ def test_every_held_out_run_can_be_drawn_with_its_inputs(with_effect: Diagnosis)
     assert {"overlay", "overlay-2"} <= set(drawn)
     assert len(drawn["overlay"].figure.axes) == 2 * len(run.measured)
     *_, last = drawn["overlay-2"].figure.axes
-    assert (last.get_ylabel(), last.get_xlabel()) == ("Motor torque (N·m)", "Time (s)")
+    assert (last.get_ylabel(), last.get_xlabel()) == ("Motor torque\n(N·m)", "Time (s)")
     assert set(last.lines[0].get_ydata()) == {0.5, -2.0}
     upper, _ = overlay(replace(with_effect, overlays=two), tuple(Figure().subplots(2, 1)), experiment="push")
     assert upper.get_ylabel().startswith("Motor angle")

@@ -11,6 +11,7 @@ from tendonlab.checking.check import check
 from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.diagnosis.answer.answer import answer
+from tendonlab.diagnosis.answer.confirm import confirmed
 from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
 from tendonlab.diagnosis.search.select import select_effects
@@ -63,7 +64,7 @@ def diagnose(
         nominal = fitter.fit(case.system, initial=initial, known=True, solve=any(initial))  # any: there may be none
         tuned = fitter.fit(rough.system, initial=initial)
         fitter, tuned = renewed(fitter, tuned, shop.pool)
-        search = select_effects(fitter, tuned, shop)
+        search = confirmed(select_effects(fitter, tuned, shop), shop)
         log.info("selected %s", search.selected)
         why = answer(search, nominal, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (FORCED, *why.warnings) if found.blocks else why.warnings

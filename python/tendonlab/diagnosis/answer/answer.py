@@ -87,10 +87,10 @@ def answer(
 
 def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor) -> Levels:
     return Levels(
-        nominal=nominal.mean_square if floor.repeated else _plain_level(stages["nominal"], floor),
+        nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
-        refitted=_plain_level(stages["refitted"], floor),
-        explained=_explained(stages, floor) if search.selected else None,
+        refitted=heldout.level(stages["refitted"], floor),
+        explained=heldout.explained(stages["refitted"], stages["with_effect"], floor) if search.selected else None,
         repeated=floor.repeated,
     )
 
@@ -109,19 +109,6 @@ def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> list[dic
         {"effects": list(model.added), "rms": {case.outputs[c]: float(heldout.rms(run)[c]) for c in case.measured}}
         for model, run in zip(search.path, replayed, strict=True)
     ]
-
-
-def _plain_level(replayed: Replayed, floor: Floor) -> float:
-    error = heldout.rms(replayed)
-    there = np.isfinite(floor.rms)
-    return float(np.mean(np.square(error[there] / floor.rms[there])))
-
-
-def _explained(stages: dict[str, Replayed], floor: Floor) -> float | None:
-    """Share of the refitted simulator's held-out excess mean square that the effects remove."""
-    before = _plain_level(stages["refitted"], floor) - 1.0
-    after = _plain_level(stages["with_effect"], floor) - 1.0
-    return None if before <= 0 else float(np.clip(1.0 - max(0.0, after) / before, 0.0, 1.0))
 
 
 def _invisible(search: Search) -> tuple[str, ...]:

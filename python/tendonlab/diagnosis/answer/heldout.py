@@ -62,6 +62,18 @@ def rms(of: Replayed) -> np.ndarray:
     return np.asarray(np.sqrt(row_mean_squares(np.concatenate(of.residuals, axis=1))))
 
 
+def level(of: Replayed, floor: Floor) -> float:
+    """Mean square error over the plain floor, averaged over the outputs: 1 at the floor."""
+    error, there = rms(of), np.isfinite(floor.rms)
+    return float(np.mean(np.square(error[there] / floor.rms[there])))
+
+
+def explained(before: Replayed, after: Replayed, floor: Floor) -> float | None:
+    """Share of the mean square above the floor that a change of model removes; None where nothing lies above it."""
+    first, last = level(before, floor) - 1.0, level(after, floor) - 1.0
+    return None if first <= 0 else float(np.clip(1.0 - max(0.0, last) / first, 0.0, 1.0))
+
+
 def gap(mean_square: np.ndarray, floor: np.ndarray) -> float:
     """sqrt(max(0, MSE - floor²)), pooled over outputs after dividing each by its floor."""
     measured = np.isfinite(floor)

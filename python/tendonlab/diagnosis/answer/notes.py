@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.diagnosis.answer import where
+from tendonlab.diagnosis.answer.confirm import CONFIRMED
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -28,6 +29,7 @@ def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
         *_on_the_split(case),
         *_on_the_fits(search),
         *_on_the_failed(search),
+        *_on_the_refuted(search),
     ]
 
 
@@ -76,6 +78,15 @@ def _on_the_failed(search: Search) -> list[str]:
     names = [effect for effect in failed if effect not in tried]
     them = "them" if len(names) > 1 else "it"
     return [f"No fit succeeded with {', '.join(names)}, which does not exclude {them}."] if names else []
+
+
+def _on_the_refuted(search: Search) -> list[str]:
+    if not search.refuted:
+        return []
+    return [
+        f"Not established: {', '.join(search.refuted)}. The training experiments speak for it, but on held-out ones "
+        f"it removes less than {100 * CONFIRMED:.0f} % of the excess error, as a slow error of a sensor would."
+    ]
 
 
 def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list[str]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +38,13 @@ class Round:
     accepted: Trial | None
     established: Set[str]
     failed: tuple[str, ...] = ()
+
+    def refuted(self) -> Round:
+        """The round where none of its effects holds: each ranks behind no further effect, which takes their place."""
+        behind = math.exp(-UNCONFIRMED)
+        shares = {name: behind * p if name in self.established else p for name, p in self.probability.items()}
+        shares[None] += sum(self.probability.values()) - sum(shares.values())
+        return replace(self, probability=shares, accepted=None, established=frozenset())
 
     @classmethod
     def of(

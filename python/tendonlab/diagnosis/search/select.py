@@ -26,12 +26,14 @@ MAX_IMPROVEMENTS = 3
 class Search:
     """The outcome of a search. `tuned`: the refitted simulator without any added effect. `steps`: the model after each
     effect that was added. `rounds`: the contest for the place of each effect, then the one that no further effect won.
-    `fitter`: the last one, under whose noise floor the final model was judged."""
+    `fitter`: the last one, under whose noise floor the final model was judged. `refuted`: effects that held-out
+    experiments refuted."""
 
     fitter: Fitter
     tuned: Fitted
     steps: tuple[Fitted, ...]
     rounds: tuple[Round, ...]
+    refuted: tuple[str, ...] = ()
 
     @property
     def final(self) -> Fitted:
@@ -42,6 +44,13 @@ class Search:
     def selected(self) -> tuple[str, ...]:
         """Effects established, in the order in which they were added."""
         return self.final.added
+
+    def without_last(self, fitter: Fitter, model: Fitted) -> Search:
+        """The search as if the last effect had not been established, under the `fitter` for the `model` before."""
+        last = len(self.steps) - 1
+        tuned, steps = (self.tuned, (*self.steps[: last - 1], model)) if last else (model, ())
+        rounds = (*self.rounds[:last], self.rounds[last].refuted())
+        return Search(fitter, tuned, steps, rounds, (self.selected[-1], *self.refuted))
 
     @property
     def path(self) -> tuple[Fitted, ...]:

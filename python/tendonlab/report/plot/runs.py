@@ -59,7 +59,7 @@ def draw_input(ax: Axes, run: Overlay, name: str, *, unit: str, window: tuple[fl
     """What was logged of an input over the time of the run, or the `window` (from, to) of it, s."""
     seen = _within(run, window)
     ax.plot(*_thin(run.time[seen], run.inputs[name][seen]), color=INK, lw=0.9)
-    ax.set_ylabel(label(name, unit))
+    ax.set_ylabel(wrapped(label(name, unit), width=14))
     ax.set_xlabel("Time (s)")
     ax.margins(x=0.01)
     tidy(ax, grid="both")

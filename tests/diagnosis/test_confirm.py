@@ -1,0 +1,125 @@
+"""Held-out experiments refute an effect that only the training experiments speak for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.answer import confirm, heldout, notes
+from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.search.contest import Round
+from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.problem import Fitter
+
+FIRST, SECOND = "joint:stribeck", "actuation:delay"
+
+
+def replayed(*rms: float) -> Replayed:
+    residual = np.array([[level, -level, level] for level in rms])
+    return Replayed((), (), (residual,), (residual,))
+
+
+def floor(*rms: float, known: tuple[float, ...]) -> Floor:
+    return Floor(np.array(rms), [[] for _ in rms], list(rms), 0.008, repeated=False, known=known)
+
+
+def test_the_share_explained_is_that_of_the_mean_square_above_the_floor() -> None:
+    """By hand: (9 + 1)/2 - 1 = 4 before, (3 + 1)/2 - 1 = 1 after."""
+    of = floor(1.0, 2.0, known=(0.1, 0.1))
+    assert heldout.level(replayed(3.0, 2.0), of) == pytest.approx(5.0)
+    share = heldout.explained(replayed(3.0, 2.0), replayed(math.sqrt(3.0), 2.0), of)
+    assert share == pytest.approx(0.75)
+    assert heldout.explained(replayed(1.0, 2.0), replayed(0.5, 2.0), of) is None
+    assert heldout.explained(replayed(3.0, 2.0), replayed(4.0, 2.0), of) == 0.0
+    assert heldout.explained(replayed(3.0, 2.0), replayed(0.1, 0.1), of) == 1.0
+
+
+def test_an_output_without_a_floor_was_not_measured_and_does_not_count() -> None:
+    assert heldout.level(replayed(3.0, 7.0), floor(1.0, math.nan, known=(0.1, 0.0))) == pytest.approx(9.0)
+
+
+@pytest.fixture
+def found(fitter: Fitter, nominal: Fitted) -> Callable[..., Search]:
+    """A search that selected these effects, one after the other."""
+
+    def made(*effects: str, repeated: bool = False) -> Search:
+        steps = tuple(replace(nominal, added=effects[: k + 1]) for k in range(len(effects)))
+        rounds = tuple(_won(effect, step) for effect, step in zip(effects, steps, strict=True))
+        size = len(fitter.floor.sd)
+        own = replace(fitter.floor, repeated=repeated, known=(1e-9,) * size, rms=np.full(size, 1.0))
+        return Search(replace(fitter, floor=own), nominal, steps, rounds)
+
+    return made
+
+
+def _won(effect: str, step: Fitted) -> Round:
+    trial = Trial(effect, step, 100.0, 100.0, 1.0)
+    shares = {effect: 0.95, "motor:presliding": 0.01, None: 0.04}
+    return Round(step.added[:-1], (), (trial,), shares, trial, {effect})
+
+
+@pytest.fixture
+def shop(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
+    """A workshop, where models of none, one and two effects replay with these errors."""
+
+    def made(*errors: float) -> Any:
+        monkeypatch.setattr(confirm, "renewed", lambda fitter, model, pool: (fitter, model))
+        monkeypatch.setattr(heldout, "models", lambda case, model, judged: [len(model.added)])
+        monkeypatch.setattr(heldout, "replay", lambda case, models, judged: replayed(*[errors[models[0]]] * 3))
+        return SimpleNamespace(pool=None)
+
+    return made
+
+
+@pytest.mark.parametrize(("after", "kept"), [(1.0, True), (8.6, True), (8.75, False), (10.0, False), (12.0, False)])
+def test_an_effect_must_remove_a_quarter_of_the_held_out_excess(
+    found: Callable[..., Search], shop: Callable[..., Any], after: float, kept: bool
+) -> None:
+    """The floor is 1: of 99 a quarter is 24.75, which is left at sqrt(75.25) = 8.675."""
+    search = confirm.confirmed(found(FIRST), shop(10.0, after))
+    assert search.selected == ((FIRST,) if kept else ())
+    assert search.refuted == (() if kept else (FIRST,))
+
+
+def test_only_what_is_refuted_is_dropped_the_last_effect_first(
+    found: Callable[..., Search], shop: Callable[..., Any]
+) -> None:
+    search = confirm.confirmed(found(FIRST, SECOND), shop(10.0, 3.0, 2.9))
+    assert search.selected == (FIRST,)
+    assert search.refuted == (SECOND,)
+    assert [contest.accepted is not None for contest in search.rounds] == [True, False]
+    both = confirm.confirmed(found(FIRST, SECOND), shop(10.0, 9.9, 9.8))
+    assert (both.selected, both.refuted) == ((), (FIRST, SECOND))
+
+
+def test_repeats_establish_what_held_out_experiments_may_not_show(
+    found: Callable[..., Search], shop: Callable[..., Any]
+) -> None:
+    assert confirm.confirmed(found(FIRST, repeated=True), shop(10.0, 10.0)).selected == (FIRST,)
+
+
+def test_a_refuted_effect_ranks_behind_none(found: Callable[..., Search]) -> None:
+    (won,) = found(FIRST).rounds
+    refuted = won.refuted()
+    assert refuted.accepted is None
+    assert refuted.probability[FIRST] == pytest.approx(0.95 * math.exp(-3.0))
+    assert refuted.probability["motor:presliding"] == 0.01
+    assert sum(refuted.probability.values()) == pytest.approx(1.0)
+    assert refuted.probability[None] > 0.9
+
+
+def test_the_report_says_what_was_refuted(found: Callable[..., Search], shop: Callable[..., Any]) -> None:
+    search = confirm.confirmed(found(FIRST), shop(10.0, 10.0))
+    (said,) = notes._on_the_refuted(search)
+    assert said.startswith("Not established: joint:stribeck. The training experiments speak for it, but on held-out")
+    assert "less than 25 % of the excess error" in said
+    assert notes._on_the_refuted(found(FIRST)) == []
