@@ -129,7 +129,9 @@ class Fitted:
 
     @cached_property
     def evidence(self) -> float:
-        """Laplace log evidence, up to what all models share."""
+        """Laplace log evidence, up to what all models share; -inf where derivatives exploded."""
+        if not np.isfinite(self._information).all():
+            return float("-inf")
         away = (self.x - np.array([f.mean for f in self.free])) ** 2 * self._prior
         misfit = sum(float(b.residual @ b.residual) for b in self.blocks) + sum(self._spreads)
         sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
@@ -139,18 +141,28 @@ class Fitted:
 
     @cached_property
     def left_out(self) -> np.ndarray:
-        """Predictive log score of each block when it is left out: one Newton step without it."""
-        steps = (self._step_without([b]) for b in self.blocks)
-        return self._scores([b.residual + b.jacobian @ step for b, step in zip(self.blocks, steps, strict=True)])
+        """Predictive log score of each block when it is left out: of the values that the other blocks give by one
+        Newton step, and of how uncertain these are. A block that alone determines a value is hard to foretell."""
+        if not np.isfinite(self._information).all():
+            return np.full(len(self.blocks), -np.inf)
+        misfit = np.array([self._foretold(b) for b in self.blocks])
+        return np.asarray(-0.5 * (misfit + np.array(self._spreads)))
 
     @property
     def scores(self) -> np.ndarray:
         """Log score of each block as it was fitted."""
-        return self._scores([b.residual for b in self.blocks])
-
-    def _scores(self, residuals: Sequence[np.ndarray]) -> np.ndarray:
-        misfit = np.array([float(r @ r) for r in residuals])
+        misfit = np.array([float(b.residual @ b.residual) for b in self.blocks])
         return np.asarray(-0.5 * (misfit + np.array(self._spreads)))
+
+    def _foretold(self, block: Score) -> float:
+        """Minus twice the logarithm of the normal density of a block's rows under the fit to the others: their
+        covariance is 1 + J C J', with C that of the coordinates there."""
+        residual = block.residual + block.jacobian @ self._step_without([block])
+        slopes = block.jacobian[:, self._moving]
+        whole, rest = (self._moving_precision(of) for of in ([], [block]))
+        along = slopes.T @ residual
+        (_, volume), (_, before) = np.linalg.slogdet(whole), np.linalg.slogdet(rest)
+        return float(residual @ residual - along @ np.linalg.solve(whole, along) + volume - before)
 
     @cached_property
     def _spreads(self) -> list[float]:
@@ -168,13 +180,21 @@ class Fitted:
 
     def _step_without(self, blocks: Sequence[Score]) -> np.ndarray:
         """How the coordinates move when some blocks are left out: one Newton step; what is at a bound stays there."""
-        moving = ~np.array(self.at_bound, dtype=bool)
-        known = self.precision - sum(b.jacobian.T @ b.jacobian for b in blocks)
-        known += 1e-9 * np.diag(np.diag(self.precision))
         pull = sum(b.jacobian.T @ b.residual for b in blocks)
         step = np.zeros(len(self.x))
-        step[moving] = np.linalg.solve(known[np.ix_(moving, moving)], np.asarray(pull)[moving])
+        step[self._moving] = np.linalg.solve(self._moving_precision(blocks), np.asarray(pull)[self._moving])
         return step
+
+    @property
+    def _moving(self) -> np.ndarray:
+        """Coordinates that are not at a bound, as a mask."""
+        return ~np.array(self.at_bound, dtype=bool)
+
+    def _moving_precision(self, without: Sequence[Score]) -> np.ndarray:
+        """Precision of the coordinates that are not at a bound, without some blocks."""
+        known = self.precision - sum(b.jacobian.T @ b.jacobian for b in without)
+        known += 1e-9 * np.diag(np.diag(self.precision))
+        return np.asarray(known[np.ix_(self._moving, self._moving)])
 
     @property
     def not_informed(self) -> tuple[str, ...]:
@@ -238,7 +258,8 @@ class Fitted:
     @cached_property
     def _information(self) -> np.ndarray:
         width = len(self.free)
-        return np.asarray(sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width))))
+        with np.errstate(over="ignore", invalid="ignore"):  # derivatives may explode, which `evidence` sees
+            return np.asarray(sum((b.jacobian.T @ b.jacobian for b in self.blocks), np.zeros((width, width))))
 
 
 def _parts(rows: np.ndarray, masks: Sequence[np.ndarray]) -> list[np.ndarray]:

@@ -11,6 +11,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
 STEADY, LOSSES = 2.0, 5.0
+MOST = 1e9  # nats: beyond, a gain says no more
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 
 
@@ -28,8 +29,14 @@ class Trial:
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
         """What `fitted`, which has `effect`, gains over `base`, which has not; rows count as in `fitted`."""
         base = base.counted(fitted.shares)
-        gains = fitted.by_experiment(fitted.left_out - base.left_out)
-        return cls(effect, fitted, fitted.evidence - base.evidence, float(np.sum(gains)), doubt(gains))
+        gains = fitted.by_experiment(_bounded(fitted.left_out - base.left_out))
+        evidence = float(_bounded(fitted.evidence - base.evidence))
+        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains))
+
+
+def _bounded(gains: np.ndarray | float) -> np.ndarray:
+    """Gains over a model whose derivatives exploded, which has no evidence, are large but finite."""
+    return np.clip(gains, -MOST, MOST)
 
 
 def doubt(gains: np.ndarray) -> float:
