@@ -8,7 +8,7 @@ import pytest
 
 from tendonlab.diagnosis.search import contest
 from tendonlab.diagnosis.search.contest import Round, _explains_enough, _worth_adding, probabilities
-from tendonlab.diagnosis.search.refit import _goal, _may_be_trapped, strained
+from tendonlab.diagnosis.search.refit import _goal, strained
 from tendonlab.diagnosis.search.screen import _Score as Score
 from tendonlab.diagnosis.search.screen import _score, _starts, _unit
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
@@ -159,20 +159,14 @@ def test_a_parameter_three_sd_from_its_prior_is_strained_if_it_was_stated() -> N
     def base(x: float) -> Any:
         return SimpleNamespace(free=[SimpleNamespace(name="inertia", mean=1.0, sd=0.5)], x=[x])
 
-    def fitter(name: str, *, repeated: bool = True) -> Any:
-        parameters = SimpleNamespace(parameters={name: None})
-        return fitter_of(repeated=repeated, case=SimpleNamespace(dataset=parameters))
+    def fitter(name: str) -> Any:
+        return fitter_of(repeated=True, case=SimpleNamespace(dataset=SimpleNamespace(parameters={name: None})))
 
     assert not strained(fitter("inertia"), base(2.4))
     assert not strained(fitter("inertia"), base(-0.4))
     assert strained(fitter("inertia"), base(2.6))
     assert strained(fitter("inertia"), base(-0.6))
     assert not strained(fitter("mass"), base(2.6))
-    assert [_may_be_trapped(fitter("inertia", repeated=r), base(x)) for r, x in [(True, 1.0), (True, 3.0)]] == [
-        False,
-        True,
-    ]
-    assert _may_be_trapped(fitter("inertia", repeated=False), base(1.0))
 
 
 def test_fits_start_from_the_best_score_and_from_the_best_of_another_shape() -> None:
@@ -217,3 +211,15 @@ def test_the_gain_of_a_candidate_is_that_of_least_squares_with_the_free_paramete
     assert found.start[name] == pytest.approx(best[0] * unit, rel=1e-6)
     information = np.linalg.inv(np.linalg.inv(matrix.T @ matrix)[:1, :1])[0, 0] - AMPLITUDE_SD**-2.0
     assert found.visibility == pytest.approx(0.5 * information, rel=1e-6)  # of an effect of one unit
+
+
+def test_gains_over_a_model_without_evidence_are_finite() -> None:
+    """Where derivatives explode, the model without the effect has no evidence; probabilities stay numbers."""
+    scores = np.array([1.0, 2.0])
+    base = SimpleNamespace(evidence=-np.inf, left_out=-np.inf * scores, counted=lambda shares: base)
+    fitted = SimpleNamespace(evidence=5.0, left_out=scores, shares=None, by_experiment=lambda gains: gains)
+    made = Trial.of("a", fitted, base)  # type: ignore[arg-type]
+    assert made.evidence_gain == 1e9
+    assert made.left_out_gain == 2e9
+    share = probabilities([made], {"a"}, DETECT, 4.0)
+    assert share["a"] == pytest.approx(1.0)

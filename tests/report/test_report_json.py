@@ -17,7 +17,7 @@ CONTRACT = [
     "replay", "gap", "where", "effects", "sets", "selected", "explained", "indistinguishable", "invisible",
     "shrinkage", "next_experiments", "data", "warnings",
 ]  # fmt: skip
-FURTHER = ["held_out", "split", "details"]
+FURTHER = ["caveats", "held_out", "split", "details"]
 VERDICTS = {"data_fault", "no_gap", "parameters_only", "effect", "unknown_effect"}
 EFFECT = {"effect", "element", "probability", "parameters", "held_out_gain", "shrinkage", "extra"}
 

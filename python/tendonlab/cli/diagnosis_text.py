@@ -7,7 +7,7 @@ from tendonlab.report.blocks import Block, Candidates, Cell, Points, Table, Text
 from tendonlab.report.diagnosis import Diagnosis, EffectFinding
 from tendonlab.report.numbers import number, prefixed, probability, span
 from tendonlab.report.outline import SECTIONS, Section
-from tendonlab.report.words import parameter_words
+from tendonlab.report.words import capital, parameter_words
 
 _BAR = 20  # columns of a probability of 1
 _LEAST = 0.01  # probability below which a candidate is not worth a line
@@ -17,7 +17,8 @@ _SHOWN = 6
 def diagnosis_text(diagnosis: Diagnosis) -> str:
     """The diagnosis on one screen: the verdict, then the brief parts of every section of the report."""
     parts = [_section(diagnosis, section) for section in SECTIONS if section.when(diagnosis)]
-    return "\n\n".join([wrapped(diagnosis.sentence), *(part for part in parts if part)])
+    first = [diagnosis.sentence, *(capital(caveat) for caveat in diagnosis.caveats)]
+    return "\n\n".join([*map(wrapped, first), *(part for part in parts if part)])
 
 
 def _section(diagnosis: Diagnosis, section: Section) -> str:

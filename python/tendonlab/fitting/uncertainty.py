@@ -29,7 +29,8 @@ class Uncertainty:
 def informed(jacobians: Iterable[np.ndarray], free: Sequence[Free]) -> np.ndarray:
     """For each free parameter, whether any residual depends on it. `jacobians`: of the residuals, in noise sd, by the
     coordinates, shape (rows, free)."""
-    information = sum((np.sum(np.square(j), axis=0) for j in jacobians), np.zeros(len(free)))
+    with np.errstate(over="ignore"):  # derivatives may explode: then they inform
+        information = sum((np.sum(np.square(j), axis=0) for j in jacobians), np.zeros(len(free)))
     width = np.array([f.sd if np.isfinite(f.sd) else 1.0 for f in free])
     return np.asarray(information * width**2 > NOTHING)
 

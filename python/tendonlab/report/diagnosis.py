@@ -130,10 +130,10 @@ class Diagnosis(EqualByFields):
     `gap` is by output, RMS in its unit: noise_floor, nominal, refitted, with_effect, on held-out experiments. `units`:
     unit of every signal and coordinate. `held_out`: one row per held-out experiment, columns nominal, refitted,
     with_effect: the gap there, pooled over outputs, in noise floors. `data`: problems of the logs, worst first, each
-    with problem, signal, experiment, detail and blocks. `overlays`: every held-out experiment, the one that tuning
-    leaves worst first. `split`: names under "train" and "test". `details`: whatever
-    else says how it was computed. Raises ParameterError where a part of the contract is missing or the verdict is
-    unknown.
+    with problem, signal, experiment, detail and blocks. `caveats`: what a reader must know before any number.
+    `overlays`: every held-out experiment, the one that tuning leaves worst first. `split`: names under "train" and
+    "test". `details`: whatever else says how it was computed. Raises ParameterError where a part of the contract is
+    missing or the verdict is unknown.
     """
 
     dataset: str
@@ -156,6 +156,7 @@ class Diagnosis(EqualByFields):
     next_experiments: tuple[Mapping[str, Any], ...]
     data: tuple[Mapping[str, Any], ...] = ()
     warnings: tuple[str, ...]
+    caveats: tuple[str, ...] = ()
     held_out: pd.DataFrame = field(default_factory=_empty_table, metadata=_BY_ROW)
     split: Mapping[str, Sequence[str]] = field(default_factory=dict)
     details: Mapping[str, Any] = field(default_factory=dict)
@@ -213,7 +214,8 @@ class Diagnosis(EqualByFields):
     def _repr_html_(self) -> str:
         from tendonlab.report import effects_table
 
-        return f"<p><b>{escape(self.sentence)}</b></p>{effects_table(self)}"
+        caveats = "".join(f"<p>{escape(caveat)}</p>" for caveat in self.caveats)
+        return f"<p><b>{escape(self.sentence)}</b></p>{caveats}{effects_table(self)}"
 
 
 def _as_it_is(value: Any) -> Any:

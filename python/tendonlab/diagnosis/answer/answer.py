@@ -10,6 +10,7 @@ import pandas as pd
 
 from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
+from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
@@ -22,6 +23,8 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import Diagnosis
+
+OPEN = 0.02  # probability from which a rival of the first effect is worth an experiment
 
 
 def answer(
@@ -66,6 +69,7 @@ def answer(
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
         next_experiments=tuple(_next(case, floor, search) + _measurements(verdict.indistinguishable)),
+        caveats=caveats(case, search.final, stages, floor, judged),
         warnings=(
             *notes.warnings(case, floor, search),
             *notes.not_asked(case, search, library),
@@ -119,11 +123,13 @@ def _invisible(search: Search) -> tuple[str, ...]:
 
 
 def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
-    """Between the first effect and what comes next to it in its place."""
+    """Between the first effect and what comes next to it in its place, where that is still open."""
     if not search.rounds or (own := search.rounds[0].accepted) is None:
         return []
-    others = [trial.fitted for trial in search.rounds[0].trials if trial is not own]
-    return advise(case, floor, own.fitted, others[0] if others else search.tuned)
+    share = search.rounds[0].probability
+    rivals = [(share[t.effect], t.fitted) for t in search.rounds[0].trials if t is not own]
+    likeliest, other = max([*rivals, (share[None], search.tuned)], key=lambda pair: pair[0])
+    return advise(case, floor, own.fitted, other) if likeliest > OPEN else []
 
 
 def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:

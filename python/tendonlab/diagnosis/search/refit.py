@@ -31,15 +31,10 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | No
     best: Fitted | None = None
     for values in candidate.starts if candidate.simulated else ():
         best = more_evident(best, _fit(fitter, base, {candidate.effect: values}, best, pace=pace))
-    if _may_be_trapped(fitter, base) and (best is None or best.mean_square > NEAR_FLOOR):
+    if best is None or (strained(fitter, base) and best.mean_square > NEAR_FLOOR):
         fit = _fit(fitter, base, {candidate.effect: candidate.starts[0]}, best, pace=pace, from_nominal=True)
         best = more_evident(best, fit)
     return best
-
-
-def _may_be_trapped(fitter: Fitter, base: Fitted) -> bool:
-    """Whether fits that start at the tuned values may end where other parameters compensate for the effect."""
-    return not fitter.floor.repeated or strained(fitter, base)
 
 
 def more_evident(best: Fitted | None, fit: Fitted | None) -> Fitted | None:

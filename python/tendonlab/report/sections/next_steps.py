@@ -19,7 +19,8 @@ _GAIN = (
 def next_steps(diagnosis: Diagnosis) -> list[Block]:
     """The proposed experiments, best first."""
     if not diagnosis.next_experiments:
-        return [Text(text="No further measurement is proposed.")]
+        settled = ": no other cause competes with what was named" if diagnosis.verdict == "effect" else ""
+        return [Text(text=f"No further measurement is proposed{settled}.")]
     items = [
         (capital(str(entry["description"])), _purpose(entry, diagnosis.system)) for entry in diagnosis.next_experiments
     ]

@@ -1,0 +1,62 @@
+"""What a reader must know before any number: said in the first lines of a report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tendonlab.diagnosis.answer import heldout
+from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import Floor
+
+PULLED = 4.0  # stated standard deviations from the stated value
+WORSE = 1.05  # ratio of held-out mean squares that is no accident of rounding
+
+
+def caveats(
+    case: Case, final: Fitted, stages: Mapping[str, Replayed], floor: Floor, judged: Sequence[int]
+) -> tuple[str, ...]:
+    """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal."""
+    return (*_pulled(case, final), *_worse(stages, floor, final.added), *_drowned(case, floor, judged))
+
+
+def _pulled(case: Case, final: Fitted) -> list[str]:
+    said = []
+    for free, x in zip(final.free, final.x, strict=True):
+        stated = case.dataset.parameters.get(free.name)
+        if stated is None or not stated.sd or not np.isfinite(stated.sd):
+            continue
+        away = abs(float(x) - free.mean) / free.sd
+        if away > PULLED:
+            said.append(
+                f"{free.name} was fitted at {free.value(float(x)):.3g} {final.system.unit(free.name)}: {away:.0f} "
+                f"standard deviations from the stated {stated.value:.3g} ± {stated.sd:.2g}."
+            )
+    return said
+
+
+def _worse(stages: Mapping[str, Replayed], floor: Floor, added: Sequence[str]) -> list[str]:
+    error = {stage: float(np.sqrt(heldout.level(of, floor))) for stage, of in stages.items()}
+    steps = [("nominal", "refitted", "Tuning the parameters")]
+    steps += [("refitted", "with_effect", f"Adding {' and '.join(added)}")] if added else []
+    return [
+        f"{change} made the held-out error larger: {error[before]:.3g} noise floors before, {error[after]:.3g} after."
+        for before, after, change in steps
+        if error[after] ** 2 > WORSE * error[before] ** 2
+    ]
+
+
+def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
+    said = []
+    for c in case.measured:
+        records = [case.prepared[i].measured[c] for i in judged]
+        swing = float(np.sqrt(np.mean([np.nanvar(row) for row in records if np.isfinite(row).any()] or [np.nan])))
+        if floor.rms[c] > swing:
+            said.append(
+                f"The noise floor of {case.outputs[c]} ({floor.rms[c]:.2g}) exceeds its motion (rms {swing:.2g}): what "
+                "it says decides nothing."
+            )
+    return said
