@@ -265,3 +265,10 @@ def test_gains_of_the_replay_carry_their_units(undrawn: Diagnosis, tmp_path: Pat
     replay = {"kind": "injection", "kp": 0.8, "kd": 0.01, "kp_unit": "N*m/rad", "kd_unit": "N*m*s/rad"}
     words = " ".join(read(replace(undrawn, replay=replay), tmp_path)[1].text)
     assert "kp = 0.8 N·m/rad; kd = 0.01 N·m·s/rad." in words
+
+
+def test_caveats_stand_below_the_verdict(with_effect: Diagnosis, tmp_path: Path) -> None:
+    text, _ = read(replace(with_effect, caveats=("inertia was <fitted> far away.",)), tmp_path)
+    head = text[text.index("<h1>") : text.index("</header>")]
+    assert "Inertia was &lt;fitted&gt; far away." in head
+    assert 'class="caveat"' not in read(with_effect, tmp_path)[0]

@@ -1,0 +1,68 @@
+"""What a reader must know before any number: strained values, changes for the worse, floors above their signal."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.answer.caveats import caveats
+from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.fitting.noise import Floor
+from tendonlab.simulation.records import NominalParameter
+
+FLOOR = Floor(np.array([1.0]), [[]], [1.0], 0.008, repeated=True)
+
+
+def said(*, x: float = 0.0, errors: tuple[float, float, float] = (9.0, 3.0, 2.0), added: tuple[str, ...] = ("a:b",),
+         swing: float = 50.0, stated: NominalParameter | None = None) -> tuple[str, ...]:  # fmt: skip
+    """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
+    free: Any = SimpleNamespace(name="inertia", mean=0.0, sd=0.1, value=lambda x: 0.02 * float(np.exp(x)))
+    final: Any = SimpleNamespace(
+        free=[free], x=[0.1 * x], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2")
+    )
+    time = np.linspace(0.0, 20.0 * np.pi, 4001)
+    parameters = {"inertia": stated or NominalParameter(0.02, 0.002)}
+    case: Any = SimpleNamespace(
+        dataset=SimpleNamespace(parameters=parameters),
+        measured=[0],
+        outputs=["joint_angle"],
+        prepared=[SimpleNamespace(measured=swing * np.sqrt(2.0) * np.sin(time)[None])],
+    )
+    stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
+    return caveats(case, final, stages, FLOOR, [0])
+
+
+def _of(error: float) -> Replayed:
+    return Replayed((), (), (np.array([[error, -error]]),), ())
+
+
+def test_nothing_is_said_where_all_is_well() -> None:
+    assert said(x=3.9) == ()
+
+
+def test_a_parameter_far_from_its_stated_value_is_named() -> None:
+    (text,) = said(x=-4.4)
+    assert text == "inertia was fitted at 0.0129 kg*m^2: 4 standard deviations from the stated 0.02 ± 0.002."
+
+
+@pytest.mark.parametrize("sd", [None, 0.0, np.inf])
+def test_a_value_stated_without_a_standard_deviation_pulls_nothing(sd: float | None) -> None:
+    assert said(x=9.0, stated=NominalParameter(0.02, sd)) == ()
+
+
+def test_changes_that_make_the_held_out_error_larger_are_named() -> None:
+    (tuning,) = said(errors=(2.0, 3.0, 2.5))
+    assert tuning == "Tuning the parameters made the held-out error larger: 2 noise floors before, 3 after."
+    (effect,) = said(errors=(9.0, 3.0, 4.0))
+    assert effect == "Adding a:b made the held-out error larger: 3 noise floors before, 4 after."
+    assert said(errors=(9.0, 3.0, 4.0), added=()) == ()
+    assert said(errors=(3.0, 3.05, 3.0)) == ()  # rounding
+
+
+def test_a_floor_above_the_motion_is_named() -> None:
+    (text,) = said(swing=0.5)
+    assert text.startswith("The noise floor of joint_angle (1) exceeds its motion (rms 0.5)")
+    assert said(swing=1.05) == ()
