@@ -71,7 +71,8 @@ def _won(effect: str, step: Fitted) -> Round:
 def shop(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """A workshop, where models of none, one and two effects replay with these errors."""
 
-    def made(*errors: float) -> Any:
+    def made(*errors: float, gain: float = 1.0) -> Any:
+        monkeypatch.setattr(heldout, "predictive_gain", lambda *_: {"mean": gain, "se": 1.0})
         monkeypatch.setattr(confirm, "renewed", lambda fitter, model, pool: (fitter, model))
         monkeypatch.setattr(heldout, "models", lambda case, model, judged: [len(model.added)])
         monkeypatch.setattr(heldout, "replay", lambda case, models, judged: replayed(*[errors[models[0]]] * 3))
@@ -88,6 +89,22 @@ def test_an_effect_must_remove_a_quarter_of_the_held_out_excess(
     search = confirm.confirmed(found(FIRST), shop(10.0, after))
     assert search.selected == ((FIRST,) if kept else ())
     assert search.refuted == (() if kept else (FIRST,))
+
+
+@pytest.mark.parametrize(("gain", "kept"), [(-9.0, False), (1.9, False), (2.1, True)])
+def test_a_sure_gain_on_held_out_experiments_confirms_a_small_effect(
+    found: Callable[..., Search], shop: Callable[..., Any], gain: float, kept: bool
+) -> None:
+    assert bool(confirm.confirmed(found(FIRST), shop(10.0, 9.5, gain=gain)).selected) is kept
+
+
+def test_without_held_out_experiments_nothing_is_refuted(
+    found: Callable[..., Search], shop: Callable[..., Any]
+) -> None:
+    search = found(FIRST)
+    fitter = search.fitter
+    alone = replace(search, fitter=replace(fitter, case=fitter.case.training_on(fitter.case.train)))
+    assert confirm.confirmed(alone, shop(10.0, 10.0)).selected == (FIRST,)
 
 
 def test_only_what_is_refuted_is_dropped_the_last_effect_first(

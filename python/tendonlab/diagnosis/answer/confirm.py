@@ -10,7 +10,8 @@ from tendonlab.diagnosis.floor import renewed
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.workshop import Workshop
 
-CONFIRMED = 0.25  # share of the held-out excess that the last effect must remove
+CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
+SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 
 
 def confirmed(search: Search, shop: Workshop) -> Search:
@@ -21,10 +22,12 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 
 
 def _is_refuted(search: Search) -> bool:
-    """Whether the last effect removes too little of what the model without it leaves of the held-out experiments."""
-    case = search.fitter.case
+    """Whether the last effect removes little of what the model without it leaves of the held-out experiments, and may
+    do even that by chance."""
+    case, fitter = search.fitter.case, search.fitter
     if not case.test:
         return False
     before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
-    share = heldout.explained(before, after, search.fitter.floor.reached_by(heldout.rms(after)))
-    return share is not None and share < CONFIRMED
+    share = heldout.explained(before, after, fitter.floor.reached_by(heldout.rms(after)))
+    gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
+    return share is not None and share < CONFIRMED and gain["mean"] < SURE * gain["se"]

@@ -85,7 +85,7 @@ def _on_the_refuted(search: Search) -> list[str]:
         return []
     return [
         f"Not established: {', '.join(search.refuted)}. The training experiments speak for it, but on held-out ones "
-        f"it removes less than {100 * CONFIRMED:.0f} % of the excess error, as a slow error of a sensor would."
+        f"it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance."
     ]
 
 
