@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.answer import answer
-from tendonlab.diagnosis.answer.answer import _explained, _gap, _invisible, _levels, _next, _plain_level, _steps
+from tendonlab.diagnosis.answer.answer import _gap, _invisible, _levels, _next, _steps
 
 FLOOR: Any = SimpleNamespace(rms=np.array([0.5, np.nan, 2.0]), repeated=False)
 CASE: Any = SimpleNamespace(outputs=["a", "b", "c"], measured=[0, 2])
@@ -17,25 +17,6 @@ def replayed(*errors: float) -> Any:
     """Residuals of two experiments with these rms errors; the second output was not measured."""
     rows = np.array(errors)[:, None] * np.tile([1.0, -1.0], 10)
     return SimpleNamespace(residuals=[rows[:, :8], rows[:, 8:]])
-
-
-def test_a_level_is_the_mean_square_error_over_the_floor_of_what_was_measured() -> None:
-    assert _plain_level(replayed(1.0, np.nan, 6.0), FLOOR) == pytest.approx(0.5 * (4.0 + 9.0))
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "explained"),
-    [(3.0, 2.0, 5.0 / 8.0), (3.0, 1.0, 1.0), (3.0, 0.2, 1.0), (3.0, 4.0, 0.0), (1.0, 0.5, None), (0.9, 0.9, None)],
-)
-def test_effects_explain_the_share_of_the_excess_over_the_floor_that_they_remove(
-    before: float, after: float, explained: float | None
-) -> None:
-    """Errors in floors: an excess of 9 - 1 falls to 4 - 1."""
-    stages = {
-        name: replayed(0.5 * level, np.nan, 2.0 * level)
-        for name, level in (("refitted", before), ("with_effect", after))
-    }
-    assert _explained(stages, FLOOR) == (None if explained is None else pytest.approx(explained))
 
 
 @pytest.mark.parametrize("repeated", [False, True])
@@ -80,12 +61,18 @@ def test_an_effect_is_invisible_that_neither_gains_nor_could_gain_a_nat() -> Non
     assert _invisible(search) == ()
 
 
-def test_the_next_experiment_separates_the_first_effect_from_its_best_rival(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_next_experiment_separates_the_first_effect_from_its_likeliest_rival_if_that_is_open(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(answer, "advise", lambda case, floor, first, second: [(first, second)])
-    own, rival = SimpleNamespace(fitted="own"), SimpleNamespace(fitted="rival")
-    search: Any = SimpleNamespace(rounds=[SimpleNamespace(accepted=own, trials=(own, rival))], tuned="tuned")
-    assert _next(CASE, FLOOR, search) == [("own", "rival")]
-    search.rounds = [SimpleNamespace(accepted=own, trials=(own,))]
-    assert _next(CASE, FLOOR, search) == [("own", "tuned")]
-    search.rounds = [SimpleNamespace(accepted=None, trials=(own,))]
-    assert _next(CASE, FLOOR, search) == []
+    own, rival, weak = (SimpleNamespace(effect=name, fitted=name) for name in ("own", "rival", "weak"))
+
+    def proposed(accepted: Any, **share: float) -> Any:
+        probability = {"own": 0.9, "rival": share["rival"], "weak": 0.001, None: share["none"]}
+        contest = SimpleNamespace(accepted=accepted, trials=(own, weak, rival), probability=probability)
+        return _next(CASE, FLOOR, SimpleNamespace(rounds=[contest], tuned="tuned"))  # type: ignore[arg-type]
+
+    assert proposed(own, rival=0.06, none=0.03) == [("own", "rival")]
+    assert proposed(own, rival=0.03, none=0.06) == [("own", "tuned")]
+    assert proposed(own, rival=0.019, none=0.01) == []
+    assert proposed(None, rival=0.5, none=0.5) == []

@@ -50,7 +50,11 @@ def test_proposals_name_what_they_separate_and_by_how_much(with_effect: Diagnosi
     (entry,) = with_effect.next_experiments
     without = replace(with_effect, next_experiments=({**entry, "expected_gain": None},))
     assert not any("in nats" in getattr(block, "text", "") for block in next_steps(without))
-    nothing: Any = SimpleNamespace(next_experiments=())
-    (only,) = next_steps(nothing)
-    told: Any = only
-    assert told.text == "No further measurement is proposed."
+    texts = {}
+    for verdict in ("effect", "unknown_effect"):
+        nothing: Any = SimpleNamespace(next_experiments=(), verdict=verdict)
+        (only,) = next_steps(nothing)
+        told: Any = only
+        texts[verdict] = told.text
+    assert texts["effect"].endswith("is proposed: no other cause competes with what was named.")
+    assert texts["unknown_effect"] == "No further measurement is proposed."

@@ -81,7 +81,7 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     trials = shop.refit_all(fitter, base, chosen, label)
     established = {t.effect for t in trials if bar.passed(t)}
     leader = trials[0] if trials and trials[0].effect in established else None
-    if leader and not _worth_adding(fitter, base, trials, further=further):
+    if leader is None or not _worth_adding(fitter, base, trials, further=further):
         leader, established = None, set()
     fitted = {t.effect for t in trials}
     failed = [s.effect for s in chosen if s.effect not in fitted]
