@@ -22,6 +22,9 @@ class Middle:
     def permutation(self, num: int) -> np.ndarray:
         return np.arange(num)
 
+    def spawn(self, num: int) -> "list[Middle]":
+        return [self] * num
+
 
 def drawn(shape: excitation.Shape, size: float = 1.0) -> np.ndarray:
     return shape(TIME, Middle(), size=size)
@@ -102,6 +105,21 @@ def test_a_session_repeats_one_run_at_its_start_middle_and_end(kind: str, plans:
     starts = np.array([run.start for run in runs])
     assert starts[0] == 0.0
     assert np.all((np.diff(starts) > 4.0 + 14.9) & (np.diff(starts) < 4.0 + 60.1))
+
+
+@pytest.mark.parametrize("kind", ["rich", "poor"])
+def test_without_repeats_other_motions_take_their_places_and_all_else_is_alike(kind: str) -> None:
+    options = {"excitation": kind, "sample_time": 0.002, "num_samples": 2001}
+    with_repeats, without = (
+        session(np.random.default_rng(4), has_repeats=repeats, **options)  # type: ignore[arg-type]
+        for repeats in (True, False)
+    )
+    changed = [not np.array_equal(a.reference, b.reference) for a, b in zip(with_repeats, without, strict=True)]
+    assert changed == [k in (5, 9) for k in range(10)]
+    assert not np.array_equal(without[5].reference, without[9].reference)
+    assert all(run.repeat is None for run in without)
+    for name in ("name", "start", "split", "payload", "add"):
+        assert [getattr(run, name) for run in with_repeats] == [getattr(run, name) for run in without]
 
 
 def test_a_payload_hangs_a_quarter_of_a_metre_from_the_axis() -> None:
