@@ -144,6 +144,14 @@ def test_a_rival_gets_one_effect_more_only_where_there_is_room(monkeypatch: pyte
     assert improve(FITTER, model("a", "b", "c"), [near], {}, shop) is None
 
 
+@pytest.mark.parametrize("round_", [None, SimpleNamespace(accepted=None)], ids=["no candidates", "none accepted"])
+def test_a_rival_to_which_no_effect_can_be_added_makes_no_pair(round_: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rivals, "next_effect", lambda *_, **__: round_)
+    shop: Any = None
+    near = place("a", 100.0, trials=[trial("p", 95.0)], established=["p"])
+    assert improve(FITTER, model("a", "b"), [near], {}, shop) is None
+
+
 @pytest.mark.parametrize(
     ("gain", "predicts", "established"),
     [(95.0, False, True), (115.0, False, False), (115.0, True, True), (5.0, True, False)],

@@ -4,8 +4,11 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.sections.computation import _plainly, _steps
+from tendonlab.report.sections.extent import _overlay_caption
 from tendonlab.report.sections.next_steps import next_steps
 
 
@@ -58,3 +61,14 @@ def test_proposals_name_what_they_separate_and_by_how_much(with_effect: Diagnosi
         texts[verdict] = told.text
     assert texts["effect"].endswith("is proposed: no other cause competes with what was named.")
     assert texts["unknown_effect"] == "No further measurement is proposed."
+
+
+@pytest.mark.parametrize(("outputs", "said"), [(2, False), (4, False), (5, True)])
+def test_a_caption_says_that_outputs_are_left_out_where_more_than_four_were_measured(
+    with_effect: Diagnosis, outputs: int, said: bool
+) -> None:
+    (run,) = with_effect.overlays
+    rows = {f"angle_{k}": run.measured["joint_angle"] for k in range(outputs)}
+    stages = dict.fromkeys(("measured", "nominal", "refitted", "with_effect"), rows)
+    caption = _overlay_caption(replace(run, floor=dict.fromkeys(rows, 1e-3), **stages))  # type: ignore[arg-type]
+    assert ("The 4 outputs that carry most of the gap are drawn" in caption) == said
