@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.blind.rig import draw_rig, effect_parameters, largest_amplitude
+from tendonlab.blind.systems import TWO_INERTIA, System
 
 TRUTH = {
     "gear_ratio": 8.0, "motor_coulomb": 0.03, "motor_viscous": 2e-4, "motor_inertia": 1e-4, "joint_coulomb": 0.2,
@@ -15,8 +16,8 @@ TRUTH = {
 SHAPE = {"sign": -1.0, "stribeck_velocity": 0.05, "bristle_damping_ratio": 0.2, "asymmetry_mix": 0.5}
 
 
-def of(effect: str, amplitude: float) -> dict[str, float]:
-    rig: Any = SimpleNamespace(effect=effect, truth=TRUTH, shape=SHAPE)
+def of(effect: str, amplitude: float, *, system: System = TWO_INERTIA, truth: dict[str, float] = TRUTH) -> Any:
+    rig: Any = SimpleNamespace(system=system, effect=effect, truth=truth, shape=SHAPE)
     return effect_parameters(rig, amplitude)
 
 

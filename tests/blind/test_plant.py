@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendonlab.blind.plant import Controller, Lanes, Run, Scene, simulate
+from tendonlab.blind.systems import TWO_INERTIA
 
 RIG = {
     "motor_inertia": 1.2e-4,
@@ -19,6 +20,7 @@ RIG = {
 def lanes(num_lanes: int = 1, *, form: int = 0, **parameters: float | np.ndarray) -> Lanes:
     values = {**RIG, **parameters}
     return Lanes(
+        system=TWO_INERTIA,
         parameters={name: np.broadcast_to(np.asarray(value, float), (num_lanes,)) for name, value in values.items()},
         scale=np.ones((2, num_lanes)),
         form=np.full(num_lanes, form),

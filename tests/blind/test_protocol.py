@@ -12,17 +12,20 @@ import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 from sealed_cases import Drawn
 
+import tendonlab as tl
 from tendonlab.blind import commands, draw, drawing, run, runner, score
 from tendonlab.blind.commands import add_parser
-from tendonlab.blind.drawing import plan
-from tendonlab.blind.rig import EFFECTS, draw_rig
+from tendonlab.blind.planning import plan
+from tendonlab.blind.rig import draw_rig
 from tendonlab.blind.runner import command
+from tendonlab.blind.systems import RIGID_JOINT, SYSTEMS, TWO_INERTIA
 from tendonlab.blind.twin import make_twin
 
 ROOT = Path(__file__).parents[2]
@@ -91,10 +94,37 @@ def test_truth_is_drawn_beside_the_cases_unless_told_where(tmp_path: Path):
 
 def test_every_effect_has_its_turn():
     cases = plan(1, 40)
-    assert {case.effect for case in cases if case.kind == "effect"} == set(EFFECTS)
+    assert {case.effect for case in cases if case.kind == "effect"} == set(TWO_INERTIA.effects)
     assert [case.kind for case in cases].count("none") == 6
     assert [case.kind for case in cases].count("parameters_only") == 6
     assert cases == plan(1, 40) != plan(2, 40)
+
+
+def test_mixed_cases_are_half_of_each_system():
+    cases = plan(1, 41, system="mixed")
+    systems = [case.system for case in cases]
+    assert sorted(systems.count(kind) for kind in SYSTEMS) == [20, 21]
+    for case in cases:
+        assert not case.effect or case.effect in SYSTEMS[case.system].effects
+    with pytest.raises(ValueError, match="system = 'bowden': expected one of two_inertia, rigid_joint, mixed"):
+        plan(1, 4, system="bowden")
+
+
+def test_the_rigid_joint_lacks_every_effect_that_the_library_knows():
+    assert {case.effect for case in plan(1, 40, system="rigid_joint")} >= set(RIGID_JOINT.effects)
+    assert set(RIGID_JOINT.effects) == {effect.name for effect in tl.system_info("rigid_joint").effects}
+
+
+def test_a_drawn_rigid_joint_is_a_dataset_of_the_library(tmp_path: Path):
+    draw(2, 2, tmp_path, system="rigid_joint", jobs=1, num_samples=60, step=5e-4, progress=False)
+    for case in sorted((tmp_path / "cases").iterdir()):
+        dataset, sealed = tl.load(case), read(tmp_path / "sealed" / f"{case.name}.toml")
+        assert dataset.kind == "rigid_joint"
+        assert set(dataset.system().parameters) >= {"inertia", "gravity_torque"}
+        assert set(sealed["truth"]) >= {"inertia", "gravity_torque", "coulomb", "viscous"}
+        assert any("inertia" in experiment.add for experiment in dataset.experiments) == (
+            sealed["draw"]["excitation"] == "rich"
+        )
 
 
 def test_repeats_are_a_share_of_the_cases_and_change_nothing_else():
@@ -260,9 +290,9 @@ def test_command_line_scores(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.M
 def test_flow_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
     """Its commands as written, on cases fewer and shorter than it draws, by a diagnosis that knows the answers."""
 
-    def draw_less(seed: int, count: int, out: Path, *, sealed: Path | None, repeats: float, jobs: int) -> Path:
-        shorter = {"num_samples": 120, "step": 2e-4, "progress": False}
-        return draw(seed, min(count, 2), out, sealed=sealed, repeats=repeats, jobs=1, **shorter)
+    def draw_less(seed: int, count: int, out: Path, **options: Any) -> Path:
+        shorter = {"jobs": 1, "num_samples": 120, "step": 2e-4, "progress": False}
+        return draw(seed, min(count, 2), out, **(options | shorter))
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(drawing, "draw", draw_less)

@@ -8,26 +8,32 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from tendonlab.blind.plant import OUTPUTS, simulate
+from tendonlab.blind.lanes import lanes_of, scene_of
+from tendonlab.blind.plant import simulate
 from tendonlab.blind.rig import (
-    EFFECTS,
     Rig,
     draw_rig,
     effect_parameters,
     full_truth,
-    lanes_of,
     largest_amplitude,
     nominal_effects,
     nominal_parameters,
     nominal_values,
-    scene_of,
 )
 from tendonlab.blind.strength import tune
+from tendonlab.blind.systems import SYSTEMS
 
 
-def small_rig(effect: str, *, kind: str = "effect") -> Rig:
-    rig = draw_rig(np.random.default_rng(3), effect=effect, kind=kind, excitation="rich", num_samples=200)
-    return replace(rig, num_settle=50, form=0, target=2.0, noise=0.7, outputs=OUTPUTS)
+def small_rig(effect: str, *, kind: str = "effect", system: str = "two_inertia") -> Rig:
+    rig = draw_rig(
+        np.random.default_rng(3),
+        effect=effect,
+        kind=kind,
+        system=SYSTEMS[system],
+        excitation="rich",
+        num_samples=200,
+    )
+    return replace(rig, num_settle=50, form=0, target=2.0, noise=0.7, outputs=rig.system.output_names)
 
 
 def readings(rig: Rig, values: dict[str, float], *, noisy: bool = False, with_effect: bool) -> np.ndarray:
@@ -62,9 +68,9 @@ def test_no_effect_needs_no_amplitude():
     assert off.nominal_gap_noise > 1.0
 
 
-@pytest.mark.parametrize("effect", EFFECTS)
-def test_every_effect_is_what_its_name_says(effect: str):
-    rig = small_rig(effect)
+@pytest.mark.parametrize(("system", "effect"), [(kind, effect) for kind in SYSTEMS for effect in SYSTEMS[kind].effects])
+def test_every_effect_is_what_its_name_says(system: str, effect: str):
+    rig = small_rig(effect, system=system)
     amplitude = 0.5 * largest_amplitude(rig)
     added = effect_parameters(rig, amplitude)
     assert all(name.startswith(effect.partition(":")[0] + "_") for name in added)

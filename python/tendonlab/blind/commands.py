@@ -33,6 +33,8 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     )
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
+    text = "two_inertia (default), rigid_joint, or mixed for both"
+    drawing.add_argument("--system", default="two_inertia", metavar="KIND", help=text)
     text = "share of the cases that repeat an experiment, 0 to 1 (default 1)"
     drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
     drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
@@ -61,7 +63,8 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
-    print(draw(given.seed, given.count, given.out, sealed=given.sealed, repeats=given.repeats, jobs=given.jobs))
+    options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "jobs")}
+    print(draw(given.seed, given.count, given.out, **options))
     return 0
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -12,13 +11,14 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from .rig import EFFECTS, NUM_SAMPLES, Rig, draw_rig
+from .planning import Wanted, plan
+from .rig import Rig, draw_rig
 from .strength import Strength, tune
-from .write import FINE_STEP, record, sealed_toml, write_dataset
+from .systems import SYSTEMS
+from .write import record, sealed_toml, write_dataset
 
 BATCH = 20  # cases simulated together
 MAX_TRIES = 3  # of one effect, before another takes its place
-DESCRIPTION = "Synthetic two-inertia cable rig under a sampled position loop, recorded at 500 Hz; BSD-3-Clause."
 
 
 def draw(
@@ -27,27 +27,25 @@ def draw(
     out: Path | str,
     *,
     sealed: Path | str | None = None,
+    system: str = "two_inertia",
     repeats: float = 1.0,
     jobs: int = 2,
-    num_samples: int = NUM_SAMPLES,
-    step: float = FINE_STEP,
+    num_samples: int | None = None,
+    step: float | None = None,
     progress: bool = True,
 ) -> Path:
     """Draw `count` cases into `out`/cases and return `out`; about 70 % lack one effect, 15 % nothing, 15 % have wrong
     parameters only.
 
+    `system`: "two_inertia", "rigid_joint", or "mixed" for both.
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
-    The same seed gives the same cases whatever `jobs`. Raises ValueError if count < 1 or `repeats` is no share,
+    The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
     FileExistsError if one of the two folders exists.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
-    if count < 1:
-        raise ValueError(f"count = {count}: expected at least 1")
-    if not 0.0 <= repeats <= 1.0:
-        raise ValueError(f"repeats = {repeats}: expected a share from 0 to 1")
+    wanted = list(enumerate(plan(seed, count, system=system, repeats=repeats)))
     _make_folders(cases, sealed)
-    wanted = list(enumerate(plan(seed, count, repeats=repeats)))
     batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
     work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
     with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
@@ -69,36 +67,14 @@ def _make_folders(*folders: Path) -> None:
         folder.mkdir(parents=True)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Wanted:
-    """What a case is to be: its kind, the effect that it lacks ("" for none), and whether it repeats an experiment."""
-
-    kind: str
-    effect: str
-    has_repeats: bool
-
-
-def plan(seed: int, count: int, *, repeats: float = 1.0) -> list[Wanted]:
-    """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
-
-    The draw of the repeats changes nothing else: the cases of a seed are the same with and without repeats.
-    """
-    draw = np.random.default_rng([seed, 0])
-    singles = max(1, round(0.7 * count))
-    none = round(0.15 * count)
-    order: list[str] = []
-    while len(order) < singles:
-        order += [EFFECTS[i] for i in draw.permutation(len(EFFECTS))]
-    kinds = [("effect", effect) for effect in order[:singles]] + [("none", "")] * none
-    kinds += [("parameters_only", "")] * (count - len(kinds))
-    shuffled = [kinds[i] for i in draw.permutation(count)]
-    places = np.random.default_rng([seed, 0, 1]).permutation(count)[: round(repeats * count)]
-    repeated = set(places.tolist())
-    return [Wanted(kind=kind, effect=effect, has_repeats=i in repeated) for i, (kind, effect) in enumerate(shuffled)]
-
-
 def _draw_batch(
-    batch: Sequence[tuple[int, Wanted]], *, seed: int, cases: Path, sealed: Path, num_samples: int, step: float
+    batch: Sequence[tuple[int, Wanted]],
+    *,
+    seed: int,
+    cases: Path,
+    sealed: Path,
+    num_samples: int | None,
+    step: float | None,
 ) -> int:
     settled: dict[int, tuple[Rig, Strength]] = {}
     redrawn: dict[int, list[str]] = {index: [] for index, _ in batch}
@@ -117,23 +93,29 @@ def _draw_batch(
     for i, run in zip(settled, record(*_columns(settled), step=step), strict=True):
         name = f"case-{i + 1:03d}"
         rig, strength = settled[i]
-        write_dataset(rig, run, cases / name, name=name, description=DESCRIPTION)
+        write_dataset(rig, run, cases / name, name=name, description=_description(rig))
         (sealed / f"{name}.toml").write_text(sealed_toml(rig, strength, redrawn=redrawn[i]), encoding="utf-8")
     return len(batch)
+
+
+def _description(rig: Rig) -> str:
+    return f"{rig.system.title}, recorded at {round(1.0 / rig.sample_time)} Hz; BSD-3-Clause."
 
 
 def _columns(settled: dict[int, tuple[Rig, Strength]]) -> tuple[list[Rig], list[Strength]]:
     return [rig for rig, _ in settled.values()], [strength for _, strength in settled.values()]
 
 
-def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int) -> Rig:
-    effect = wanted.effect
+def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int | None) -> Rig:
+    system = SYSTEMS[wanted.system]
+    effect, effects = wanted.effect, system.effects
     if effect and tries >= MAX_TRIES:  # out of its reach on any of these rigs: another effect takes the place
-        effect = EFFECTS[(EFFECTS.index(effect) + tries // MAX_TRIES) % len(EFFECTS)]
+        effect = effects[(effects.index(effect) + tries // MAX_TRIES) % len(effects)]
     return draw_rig(
         np.random.default_rng([seed, index + 1, tries]),
         effect=effect,
         kind=wanted.kind,
+        system=system,
         num_samples=num_samples,
         has_repeats=wanted.has_repeats,
     )

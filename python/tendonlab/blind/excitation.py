@@ -129,9 +129,8 @@ def session(
     repeated, train, test = plans[0], plans[1:5], plans[5:]
     order = [("train", p) for p in train] + [("test", p) for p in test]
     order = [order[i] for i in draw.permutation(len(order))]
-    fresh = draw.spawn(1)[0]  # a stream of its own: all else is drawn alike with and without repeats
     first = _reference(repeated, time, draw)
-    others = [first if has_repeats else _reference(repeated, time, fresh) for _ in range(2)]
+    others = [first, first] if has_repeats else _fresh(repeated, time, draw)
     again, label = iter([first, *others]), "A" if has_repeats else None
     slots: list[tuple[str, str | None, Array, bool]] = []
     for i, (split, plan) in enumerate(order):
@@ -140,6 +139,12 @@ def session(
         slots.append((split, None, _reference(plan, time, draw), plan[2]))
     slots.append(("train", label, next(again), False))
     return _runs(slots, draw, seconds=num_samples * sample_time)
+
+
+def _fresh(plan: tuple[Shape, float, bool], time: Array, draw: Draw) -> list[Array]:
+    """Two more motions of a kind, from a stream of their own: all else is drawn alike with and without repeats."""
+    fresh = draw.spawn(1)[0]
+    return [_reference(plan, time, fresh) for _ in range(2)]
 
 
 def _runs(slots: list[tuple[str, str | None, Array, bool]], draw: Draw, *, seconds: float) -> list[Experiment]:

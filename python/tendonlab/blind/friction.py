@@ -1,5 +1,5 @@
-"""Friction of the twin's motor and joint, for many lanes at once; arrays are (2, n): row 0 the motor, row 1 the
-joint.
+"""Friction of the bodies of many lanes at once; arrays are (slots, n): of a two-inertia rig row 0 is the motor, row 1
+the joint.
 
     friction = level(v) sign(v) + viscous v + viscous_asymmetry |v|
     level    = (coulomb + static_excess exp(-(v/stribeck_velocity)^2) + load_dependence |load|)
@@ -12,15 +12,16 @@ a world that resembles them only. Nothing here is shared with the library under 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .systems.system import Slot
+
 Array = NDArray[np.float64]
 
-SLOTS = ("motor", "joint")
 PARAMETERS = (
     "coulomb",
     "viscous",
@@ -32,8 +33,6 @@ PARAMETERS = (
     "level_asymmetry",
     "viscous_asymmetry",
 )
-SPEED = np.array([[10.0], [1.0]])  # a usual speed of motor and joint, rad/s: scales the alternative speed laws
-LOAD = np.array([[0.1], [1.0]])  # a usual load, N*m
 LOAD_POWER = 0.9
 VISCOUS_POWER = 0.93
 COULOMB_FADE = 0.08
@@ -45,8 +44,8 @@ MAXWELL_LEVEL = (0.25, 0.35, 0.4)
 
 @dataclass
 class Bristle:
-    """State of the presliding slots: LuGre deflection z, Dahl force, forces of three Maxwell slip elements, each (2,
-    n).
+    """State of the presliding slots: LuGre deflection z, Dahl force, forces of three Maxwell slip elements, each
+    (slots, n).
     """
 
     deflection: Array
@@ -55,13 +54,17 @@ class Bristle:
 
 
 class Friction:
-    """The friction laws of n lanes. `parameters`: name -> (n,), `scale`: (2, n) run-to-run factor, `form`: (n,)
+    """The friction laws of n lanes. `parameters`: name -> (n,), `scale`: (slots, n) run-to-run factor, `form`: (n,)
     integers.
     """
 
-    def __init__(self, parameters: Mapping[str, Array], *, scale: Array, form: NDArray[np.int64]) -> None:
+    def __init__(
+        self, parameters: Mapping[str, Array], *, slots: Sequence[Slot], scale: Array, form: NDArray[np.int64]
+    ) -> None:
         zero = np.zeros(form.size)
-        rows = {p: np.stack([parameters.get(f"{s}_{p}", zero) for s in SLOTS]) for p in PARAMETERS}
+        rows = {p: np.stack([parameters.get(f"{slot.name}_{p}", zero) for slot in slots]) for p in PARAMETERS}
+        self.usual_speed = np.array([[slot.speed] for slot in slots])
+        self.usual_load = np.array([[slot.load] for slot in slots])
         self.scale = scale
         self.coulomb, self.viscous = rows["coulomb"], rows["viscous"]
         self.excess, self.falloff = (
@@ -101,33 +104,35 @@ class Friction:
         )
 
     def smooth(self, velocity: Array) -> Array:
-        """Friction that needs no sign at rest: viscous and its asymmetry, N*m, (2, n)."""
+        """Friction that needs no sign at rest: viscous and its asymmetry, N*m, (slots, n)."""
         drag = self.viscous * velocity
         if self.bent.any():
-            size = np.abs(velocity[self.bent]) / np.broadcast_to(SPEED, velocity.shape)[self.bent]
+            size = np.abs(velocity[self.bent]) / np.broadcast_to(self.usual_speed, velocity.shape)[self.bent]
             drag[self.bent] *= np.power(size + 1e-9, VISCOUS_POWER - 1.0)
         if self.has_asymmetry:
             size = np.abs(velocity)
-            size = np.where(self.other, size * (1.0 + ASYMMETRY_GROWTH * SPEED / (SPEED + size)), size)
+            size = np.where(
+                self.other, size * (1.0 + ASYMMETRY_GROWTH * self.usual_speed / (self.usual_speed + size)), size
+            )
             drag += self.viscous_asymmetry * size
         return drag * self.scale
 
     def level(self, velocity: Array, *, load: Array, direction: Array) -> Array:
-        """Dry friction level >= 0 of both slots, N*m, (2, n); `direction` is the sign of (attempted) sliding."""
+        """Dry friction level >= 0 of all slots, N*m, (slots, n); `direction` is the sign of (attempted) sliding."""
         level = self.coulomb
         if self.has_stribeck:
             square = np.square(velocity / self.falloff)
             level = level + self.excess * np.where(self.other, 1.0 / (1.0 + square), np.exp(-square))
         if self.has_load:
             size = np.abs(load)
-            size = np.where(self.other, LOAD * np.power(size / LOAD, LOAD_POWER), size)
+            size = np.where(self.other, self.usual_load * np.power(size / self.usual_load, LOAD_POWER), size)
             level = level + self.load_dependence * size
         if self.faded.any():
             size = np.abs(velocity)
-            level = level * (1.0 - self.faded * size / (size + SPEED))
+            level = level * (1.0 - self.faded * size / (size + self.usual_speed))
         if self.has_asymmetry:
             size = np.abs(velocity)
-            growth = np.where(self.other, 1.0 + ASYMMETRY_GROWTH * size / (size + SPEED), 1.0)
+            growth = np.where(self.other, 1.0 + ASYMMETRY_GROWTH * size / (size + self.usual_speed), 1.0)
             level = level * (1.0 + self.level_asymmetry * direction * growth)
         return np.maximum(level * self.scale, 0.0)
 
@@ -135,7 +140,7 @@ class Friction:
         """Dry friction of the pulley contact, which acts on the joint, N*m, (n,)."""
         size = np.abs(cable_torque)
         size = np.where(self.form != 0, np.power(size, LOAD_POWER), size)
-        level: Array = self.contact * size * self.scale[1]
+        level: Array = self.contact * size * self.scale[-1]
         return level
 
     def bristle_force(self, state: Bristle, velocity: Array, *, level: Array, step: float) -> Array:

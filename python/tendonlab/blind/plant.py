@@ -1,12 +1,9 @@
-"""Independent time-stepping simulation of the two-inertia cable rig, many lanes (rig x experiment) at once.
-
-    J_m qm'' = tau - friction_m - f/N              tau = u(t - delay) (1 + gain_error) + offset
-    J_l ql'' = f - friction_l - friction_contact - g sin ql + known          (load_offset is a constant part of `known`)
-    f = k deadzone(qm/N - ql, backlash/2) + c d/dt(qm/N - ql), c only while a flank touches
+"""Independent time-stepping simulation of rigs, many lanes (rig x experiment) at once; the equations of motion are in
+`systems`.
 
 Moreau-Jean midpoint stepping: half a drift, a kick, half a drift. The kick is the free motion followed by a dry
 friction impulse clipped at step * level, so a slot that can stick does so exactly. A discrete PD controller on the
-measured motor angle closes the loop.
+first measured output closes the loop.
 """
 
 from __future__ import annotations
@@ -18,14 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .friction import Friction
+from .sensing import Reading
+from .systems import System
 
 Array = NDArray[np.float64]
-OUTPUTS = ("motor_angle", "joint_angle", "cable_torque")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Controller:
-    """u_k = kp e_k + kd (e_k - e_(k-1))/T, e = reference - measured motor angle, clipped to +-limit; arrays (n,),
+    """u_k = kp e_k + kd (e_k - e_(k-1))/T, e = reference - first output as measured, clipped to +-limit; arrays (n,),
     SI.
     """
 
@@ -36,11 +34,11 @@ class Controller:
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """Inputs of n lanes. `reference`: motor angle, rad, (num_samples, n), or the command itself, N*m, where there is
-    no controller.
+    """Inputs of n lanes. `reference`: of the first output, rad, (num_samples, n), or the command itself, N*m, where
+    there is no controller.
 
-    `num_settle` first samples are not logged. `noise`: added to the readings, (3, num_samples, n); `resolution`: (3,
-    n), 0 for none. `initial`: (4, n) motor and joint position, then velocity; absent: the static equilibrium.
+    `num_settle` first samples are not logged. `noise`: added to the readings, (outputs, num_samples, n); `resolution`:
+    (outputs, n), 0 for none. `initial`: (2 slots, n) positions, then velocities; absent: the static equilibrium.
     `known`: joint torque, N*m, (num_samples, n).
     """
 
@@ -56,8 +54,8 @@ class Scene:
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """Logged samples: `time` s (m,), `command` N*m (m, n), `outputs` (3, m, n) in the order of OUTPUTS, `state` (4,
-    m, n).
+    """Logged samples: `time` s (m,), `command` N*m (m, n), `outputs` (outputs, m, n) in the system's order,
+    `state` (2 slots, m, n).
     """
 
     time: Array
@@ -68,13 +66,14 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True)
 class Lanes:
-    """n rigs: parameters by contract name, (n,) each (absent means 0), run-to-run friction factors (2, n),
+    """n rigs of one system: parameters by name, (n,) each (absent means 0), run-to-run friction factors (slots, n),
     functional form (n,).
 
     `form` 0 is the documented one. `effect` names each lane's effect ("joint:coulomb"), for effects whose other form
     is of a nominal law.
     """
 
+    system: System
     parameters: Mapping[str, Array]
     scale: Array
     form: NDArray[np.int64]
@@ -89,10 +88,13 @@ class Lanes:
         return value
 
     def friction(self) -> Friction:
-        laws = Friction(self.parameters, scale=self.scale, form=self.form)
-        for slot, name in enumerate(("motor", "joint")):
+        slots = self.system.slots
+        laws = Friction(self.parameters, slots=slots, scale=self.scale, form=self.form)
+        for slot, body in enumerate(slots):
             for effect in ("coulomb", "viscous"):
-                chosen = np.array([e == f"{name}:{effect}" for e in self.effect] or np.zeros(self.size), dtype=bool)
+                chosen = np.array(
+                    [e == f"{body.name}:{effect}" for e in self.effect] or np.zeros(self.size), dtype=bool
+                )
                 laws.choose_other_form(slot, chosen & (self.form != 0), effect=effect)
         return laws
 
@@ -116,75 +118,26 @@ def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1)
     return Run(time=time, command=command, outputs=np.moveaxis(outputs, 1, 0), state=np.moveaxis(state, 1, 0))
 
 
-def static_state(lanes: Lanes, scene: Scene) -> Array:
-    """Static equilibrium under the controller's first reference, frictionless; zeros without a controller. (4, n),
-    rad and rad/s.
-    """
-    state = np.zeros((4, lanes.size))
-    if scene.controller is None:
-        return state
-    ratio, stiffness, gravity = lanes.get("gear_ratio"), lanes.get("cable_stiffness"), lanes.get("gravity_torque")
-    torque = np.zeros(lanes.size)
-    for _ in range(30):  # contracts by about g/(kp N^2) + g/k, some 5 % a turn
-        wanted = (torque / ratio - lanes.get("actuation_offset")) / (1.0 + lanes.get("actuation_gain_error"))
-        state[0] = scene.reference[0] - lanes.get("sensor.motor_angle_bias") - wanted / scene.controller.kp
-        state[1] = state[0] / ratio - torque / stiffness - np.sign(torque) * lanes.get("cable_backlash") / 2.0
-        torque = 0.7 * (gravity * np.sin(state[1]) - lanes.get("load_offset")) + 0.3 * torque
-    return state
-
-
-class _Reading:
-    """One delayed and biased sensor: captures the value at (sample - delay), first within a sample, then whole
-    samples later.
-    """
-
-    def __init__(self, delay: Array, *, sample_time: float, num_steps: int) -> None:
-        late = np.floor(delay / sample_time + 1e-9).astype(int)
-        rest = np.maximum(delay - late * sample_time, 0.0)
-        self.late, self.lanes = late, np.arange(delay.size)
-        at = num_steps - rest * num_steps / sample_time  # in steps since the last sample
-        within = rest > 1e-9
-        self.capture = {int(j): np.flatnonzero(within & (np.floor(at) == j)) for j in np.unique(np.floor(at[within]))}
-        self.offset = at - np.floor(at) - 0.5  # from the middle of that step, in steps
-        self.held: dict[int, Array] = {}
-        self.past: Array | None = None
-
-    def note(self, index: int, value: Array, rate: Array) -> None:
-        lanes = self.capture.get(index)
-        if lanes is not None:
-            self.held[index] = value[lanes] + self.offset[lanes] * rate[lanes]
-
-    def read(self, value: Array) -> Array:
-        fresh = value.copy()
-        for index, held in self.held.items():
-            fresh[self.capture[index]] = held
-        if self.past is None:
-            self.past = np.repeat(value[None, :], int(self.late.max()) + 1, axis=0)
-        self.past = np.concatenate([fresh[None, :], self.past[:-1]])
-        return np.asarray(self.past[self.late, self.lanes])
-
-
 class _Plant:
     def __init__(self, lanes: Lanes, scene: Scene, num_steps: int) -> None:
         self.scene, self.num_steps, self.step = scene, num_steps, scene.sample_time / num_steps
-        self.per_ratio = 1.0 / lanes.get("gear_ratio")
-        self.stiffness, self.damping = lanes.get("cable_stiffness"), lanes.get("cable_damping")
-        self.gravity, self.half_gap = lanes.get("gravity_torque"), lanes.get("cable_backlash") / 2.0
-        self.pull = lanes.get("load_offset")
         self.gain, self.offset = 1.0 + lanes.get("actuation_gain_error"), lanes.get("actuation_offset")
-        self.kick = self.step / np.stack([lanes.get("motor_inertia"), lanes.get("joint_inertia")])
+        self.mechanics = lanes.system.mechanics(lanes, self.step)
+        self.kick = self.step / self.mechanics.inertia
         self.friction = lanes.friction()
-        self.rounded = lanes.form != 0
         self.bristle = self.friction.bristle()
         self.plain_limit = self.kick * self.friction.coulomb * self.friction.scale
         self.plain_drag = self.friction.viscous * self.friction.scale
-        self.bias = np.stack([lanes.get(f"sensor.{name}_bias") for name in OUTPUTS])
-        delays = [lanes.get(f"sensor.{name}_delay") for name in OUTPUTS]
-        self.readings = [_Reading(d, sample_time=scene.sample_time, num_steps=num_steps) for d in delays]
+        outputs = lanes.system.output_names
+        self.bias = np.stack([lanes.get(f"sensor.{name}_bias") for name in outputs])
+        delays = [lanes.get(f"sensor.{name}_delay") for name in outputs]
+        self.readings = [Reading(d, sample_time=scene.sample_time, num_steps=num_steps) for d in delays]
         self.has_sensor_delay = any(reading.capture for reading in self.readings)
+        self.deadband, self.rounded = lanes.get("actuation_deadband"), lanes.form != 0
         self._prepare_actuation(lanes.get("actuation_delay"))
-        start = static_state(lanes, scene) if scene.initial is None else scene.initial
-        self.q, self.v = start[:2].copy(), start[2:].copy()
+        start = self.mechanics.rest(scene) if scene.initial is None else scene.initial
+        bodies = len(start) // 2
+        self.q, self.v = start[:bodies].copy(), start[bodies:].copy()
 
     def _prepare_actuation(self, delay: Array) -> None:
         late = np.floor(delay / self.scene.sample_time + 1e-9).astype(int)
@@ -205,8 +158,7 @@ class _Plant:
             self._advance(k, command)
 
     def _measure(self, k: int) -> Array:
-        torque = self._cable(self.q, self.v)[0]
-        values = [self.q[0], self.q[1], torque]
+        values = self.mechanics.measure(self.q, self.v)
         measured = np.stack([r.read(y) for r, y in zip(self.readings, values, strict=True)]) + self.bias
         if self.scene.noise is not None:
             measured += self.scene.noise[:, k]
@@ -223,19 +175,6 @@ class _Plant:
         rate = (error - before) / self.scene.sample_time if k else np.zeros_like(error)
         return np.clip(controller.kp * error + controller.kd * rate, -controller.limit, controller.limit), error
 
-    def _cable(self, q: Array, v: Array) -> tuple[Array, Array]:
-        """Cable torque at the joint, N*m, and the rate of its stretch, rad/s."""
-        stretch, rate = q[0] * self.per_ratio - q[1], v[0] * self.per_ratio - v[1]
-        if not self.half_gap.any():
-            return self.stiffness * stretch + self.damping * rate, rate
-        gap = np.where(self.half_gap > 0, self.half_gap, 1.0)
-        sharp = stretch - np.clip(stretch, -self.half_gap, self.half_gap)
-        touches = np.where(self.half_gap > 0, sharp != 0.0, True).astype(float)
-        bend = np.where(self.half_gap > 0, np.tanh(stretch / gap), 0.0)
-        soft, slope = stretch - self.half_gap * bend, np.where(self.half_gap > 0, bend * bend, 1.0)
-        sharp, touches = np.where(self.rounded, soft, sharp), np.where(self.rounded, slope, touches)
-        return self.stiffness * sharp + self.damping * touches * rate, rate
-
     def _advance(self, k: int, command: Array) -> None:
         known = None if self.scene.known is None else self.scene.known[k]
         if self.commands is None:
@@ -243,6 +182,8 @@ class _Plant:
         self.commands = np.concatenate([command[None, :], self.commands[:-1]])
         lanes = np.arange(command.size)
         new, old = self.commands[self.late, lanes], self.commands[self.late + 1, lanes]
+        if self.deadband.any():
+            new, old = self._beyond_deadband(new), self._beyond_deadband(old)
         torque = new * self.gain + self.offset
         before = old * self.gain + self.offset
         self.q += 0.5 * self.step * self.v
@@ -252,40 +193,36 @@ class _Plant:
             self.q += self.step * self.v
         self.q -= 0.5 * self.step * self.v
 
+    def _beyond_deadband(self, command: Array) -> Array:
+        width = np.where(self.deadband > 0, self.deadband, 1.0)
+        smooth = self.deadband * np.tanh(command / width)
+        return np.asarray(command - np.where(self.rounded, smooth, np.clip(command, -self.deadband, self.deadband)))
+
     def _kick(self, drive: Array, known: Array | None, index: int) -> None:
-        v, laws = self.v, self.friction
-        cable, rate = self._cable(self.q, v)
-        weight = self.gravity * np.sin(self.q[1]) - self.pull
-        if known is not None:
-            weight = weight - known
-        force = np.empty_like(v)
-        np.multiply(cable, self.per_ratio, out=force[0])
-        np.subtract(drive, force[0], out=force[0])
-        np.subtract(cable, weight, out=force[1])
+        old, laws = self.v, self.friction
+        push = self.mechanics.push(self.q, old, drive, known)
+        force = push.force
         if laws.is_plain:
-            force -= self.plain_drag * v
+            force -= self.plain_drag * old
             force *= self.kick
-            force += v
+            force += old
             limit = self.plain_limit
         else:
-            force -= laws.smooth(v)
-            load = np.stack([drive, 0.5 * (cable + weight)])
-            level = laws.level(v, load=load, direction=np.sign(v + self.kick * force))
+            force -= laws.smooth(old)
+            level = laws.level(old, load=self.mechanics.load(push), direction=np.sign(old + self.kick * force))
             if laws.has_bristle:
-                force -= laws.bristle_force(self.bristle, v, level=level, step=self.step)
+                force -= laws.bristle_force(self.bristle, old, level=level, step=self.step)
                 level = np.where(laws.bristled, 0.0, level)
             if laws.has_contact:
-                level[1] += laws.contact_level(cable)
+                level[-1] += laws.contact_level(push.cable)
             force *= self.kick
-            force += v
+            force += old
             limit = self.kick * level
         size = np.abs(force)
         size -= limit
         np.maximum(size, 0.0, out=size)
         self.v = np.copysign(size, force, out=size)
         if self.has_sensor_delay:
-            slope = self.stiffness * rate
-            for reading, value, change in zip(
-                self.readings, (self.q[0], self.q[1], cable), (v[0], v[1], slope), strict=True
-            ):
-                reading.note(index, value, self.step * change)
+            values, changes = self.mechanics.within(self.q, old, self.v, push)
+            for reading, value, change in zip(self.readings, values, changes, strict=True):
+                reading.note(index, value, change)

@@ -14,22 +14,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .plant import OUTPUTS, simulate
+from .lanes import alike, lanes_of, scene_of
+from .plant import simulate
 from .rig import (
     Rig,
     effect_parameters,
+    free_parameters,
     full_truth,
-    lanes_of,
     largest_amplitude,
     nominal_parameters,
     nominal_values,
-    scene_of,
 )
 
 Array = NDArray[np.float64]
 
-COARSE_STEP = 2e-4  # s; truth and nominal run with the same one, so that its error cancels in their difference
-STRIDE = 5
+PERIOD = 0.01  # s, of the samples that are compared
 NUDGE = 0.02  # finite difference in log parameters
 PRIOR_SD = 0.3  # of a log parameter
 SMALLEST = 2e-3  # amplitude
@@ -37,28 +36,12 @@ TOLERANCE, PROMISE = 0.12, 0.18  # of log gap/noise: where the search stops, and
 NUM_LINEAR, NUM_EXACT = 4, 6
 RIVAL_AMPLITUDE = 0.1
 ORDER = 6  # of the autoregressive model of the floor
-RIVALS = {
-    "sensor.motor_angle:bias": ("sensor.joint_angle:bias",),
-    "sensor.joint_angle:bias": ("sensor.motor_angle:bias",),
-    "actuation:offset": ("load:offset", "motor:asymmetry"),
-    "motor:asymmetry": ("actuation:offset", "joint:asymmetry"),
-    "joint:asymmetry": ("load:offset", "motor:asymmetry"),
-    "actuation:delay": ("sensor.motor_angle:delay",),
-    "sensor.motor_angle:delay": ("actuation:delay",),
-    "motor:load_dependence": ("contact:load_dependence", "joint:load_dependence"),
-    "joint:load_dependence": ("contact:load_dependence", "motor:load_dependence"),
-    "contact:load_dependence": ("joint:load_dependence", "motor:load_dependence"),
-    "motor:stribeck": ("joint:stribeck",),
-    "joint:stribeck": ("motor:stribeck",),
-    "motor:presliding": ("joint:presliding",),
-    "joint:presliding": ("motor:presliding",),
-}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Strength:
-    """`gap_noise` reached at `amplitude`; `nominal_gap_noise`: before any refit; `floor`: rms noise of OUTPUTS, rad,
-    rad, N*m, (3,).
+    """`gap_noise` reached at `amplitude`; `nominal_gap_noise`: before any refit; `floor`: rms noise of every
+    output, SI.
 
     `limited`: the physical limit of the amplitude was met before the target; `met`: the target was, within 20 %.
     `separation`: nats that tell the effect from each of its rivals, by name.
@@ -78,9 +61,10 @@ def tune(rigs: Sequence[Rig]) -> list[Strength]:
     limit is met.
     """
     out: dict[int, Strength] = {}
-    for has_effect, search in ((True, _tune_effects), (False, _measure)):
-        rows = [i for i, rig in enumerate(rigs) if (rig.kind == "effect") == has_effect]
-        out |= dict(zip(rows, search([rigs[i] for i in rows]) if rows else [], strict=True))
+    for group in alike(rigs):
+        for has_effect, search in ((True, _tune_effects), (False, _measure)):
+            rows = [i for i in group if (rigs[i].kind == "effect") == has_effect]
+            out |= dict(zip(rows, search([rigs[i] for i in rows]) if rows else [], strict=True))
     return [out[i] for i in range(len(rigs))]
 
 
@@ -174,7 +158,7 @@ def separations(tuner: _Tuner) -> list[dict[str, float]]:
 
     Below 2 nats no analysis of these logs can tell which it was.
     """
-    names = [RIVALS.get(rig.effect, ()) for rig in tuner.rigs]
+    names = [rig.system.rivals.get(rig.effect, ()) for rig in tuner.rigs]
     out: list[dict[str, float]] = [{} for _ in names]
     depth = max((len(group) for group in names), default=0)
     if not depth:
@@ -190,16 +174,20 @@ def separations(tuner: _Tuner) -> list[dict[str, float]]:
 
 
 class _Tuner:
-    """Noise-free and noisy runs of several rigs; arrays of readings are (num_rigs, 3, samples * experiments)."""
+    """Noise-free and noisy runs of rigs that are simulated together; arrays of readings are (num_rigs, outputs,
+    samples * experiments). Truth and nominal run with the same coarse step: its error cancels in their difference.
+    """
 
     def __init__(self, rigs: Sequence[Rig]) -> None:
         self.rigs = rigs
-        self.used = np.array([[name in rig.outputs for name in OUTPUTS] for rig in rigs])
-        self.free = [[name for name in nominal_parameters(rig) if name != "gear_ratio"] for rig in rigs]
+        names = rigs[0].system.output_names
+        self.num_outputs = len(names)
+        self.used = np.array([[name in rig.outputs for name in names] for rig in rigs])
+        self.free = [free_parameters(rig) for rig in rigs]
         self.width = max(len(names) for names in self.free)
         self.refit = np.zeros((len(rigs), self.width))  # log parameter over truth
         self.expansion = self.refit.copy()
-        self.floor = np.ones((len(rigs), 3))
+        self.floor = np.ones((len(rigs), self.num_outputs))
 
     def subset(self, rows: NDArray[np.int64]) -> _Tuner:
         """The same search for some of the rigs, refit parameters kept."""
@@ -221,9 +209,10 @@ class _Tuner:
         """Readings of all rigs; `with_noise`: the second half of them is noisy."""
         is_noisy = [with_noise and 2 * i >= len(rigs) for i in range(len(rigs))]
         lanes = lanes_of(rigs, parameters, is_noisy=is_noisy, with_effect=with_effect)
-        run = simulate(lanes, scene_of(rigs, is_noisy=is_noisy), step=COARSE_STEP, stride=STRIDE)
-        outputs = run.outputs.reshape(3, run.time.size, len(rigs), -1)
-        return np.moveaxis(outputs, 2, 0).reshape(len(rigs), 3, -1)
+        step, stride = rigs[0].system.coarse_step, max(1, round(PERIOD / rigs[0].sample_time))
+        run = simulate(lanes, scene_of(rigs, is_noisy=is_noisy), step=step, stride=stride)
+        outputs = run.outputs.reshape(self.num_outputs, run.time.size, len(rigs), -1)
+        return np.moveaxis(outputs, 2, 0).reshape(len(rigs), self.num_outputs, -1)
 
     def start(self) -> None:
         """Readings and slopes at the true parameters, from which `linear` foretells."""
@@ -247,11 +236,11 @@ class _Tuner:
         return self._run(self.rigs, [self._values(i, row) for i, row in enumerate(logs)], with_effect=False)
 
     def _linearise(self, logs: Array) -> tuple[Array, Array]:
-        """Readings at `logs` and their slopes, (num_rigs, width, 3, ...)."""
+        """Readings at `logs` and their slopes, (num_rigs, width, outputs, ...)."""
         steps = np.concatenate([np.zeros((1, self.width)), NUDGE * np.eye(self.width)])
         rigs = [rig for _ in steps for rig in self.rigs]
         values = [self._values(i, row + nudge) for nudge in steps for i, row in enumerate(logs)]
-        runs = self._run(rigs, values, with_effect=False).reshape(len(steps), len(self.rigs), 3, -1)
+        runs = self._run(rigs, values, with_effect=False).reshape(len(steps), len(self.rigs), self.num_outputs, -1)
         return runs[0], np.moveaxis(runs[1:] - runs[0], 0, 1) / NUDGE
 
     def _weigh(self, residual: Array) -> Array:
@@ -300,8 +289,8 @@ class _Tuner:
         return self._gap(self.truth - self._run(self.rigs, values, with_effect=False))
 
     def rival(self, effects: Sequence[str]) -> Array:
-        """Change of the refitted readings with a small amplitude of another effect each (""; none), (num_rigs, 3,
-        ...).
+        """Change of the refitted readings with a small amplitude of another effect each (""; none), (num_rigs,
+        outputs, ...).
         """
         others = [replace(rig, effect=effect, form=0) for rig, effect in zip(self.rigs, effects, strict=True)]
         values = [self._values(i, row) for i, row in enumerate(self.expansion)]

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .plant import OUTPUTS
-from .rig import NUM_SAMPLES, Rig, draw_rig
+from .rig import Rig, draw_rig
 from .strength import tune
-from .write import FINE_STEP, record, sealed_toml, write_dataset
+from .write import record, sealed_toml, write_dataset
 
 SEED = 20
 EFFECT = "joint:stribeck"
@@ -30,8 +29,8 @@ def make_twin(
     effect: str = EFFECT,
     seed: int = SEED,
     gap_noise: float = GAP_NOISE,
-    num_samples: int = NUM_SAMPLES,
-    step: float = FINE_STEP,
+    num_samples: int | None = None,
+    step: float | None = None,
 ) -> Path:
     """Write one known rig as a dataset with sealed.toml beside, and return its folder.
 
@@ -50,7 +49,7 @@ def make_twin(
     return folder
 
 
-def _rig(*, kind: str, effect: str, seed: int, gap_noise: float, num_samples: int) -> Rig:
+def _rig(*, kind: str, effect: str, seed: int, gap_noise: float, num_samples: int | None) -> Rig:
     drawn = draw_rig(
         np.random.default_rng([seed]),
         effect=effect if kind == "effect" else "",
@@ -59,8 +58,9 @@ def _rig(*, kind: str, effect: str, seed: int, gap_noise: float, num_samples: in
         num_samples=num_samples,
     )
     off = kind == "parameters_only"
+    outputs = drawn.system.output_names
     return replace(
-        drawn, target=gap_noise, form=0, has_controller=True, outputs=OUTPUTS, noise=0.6, has_bounded_error=off
+        drawn, target=gap_noise, form=0, has_controller=True, outputs=outputs, noise=0.6, has_bounded_error=off
     )
 
 

@@ -5,37 +5,37 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import pandas as pd
 
 from .excitation import Experiment
-from .plant import OUTPUTS, Run, simulate
-from .rig import FORMS, RESOLUTION, SAMPLE_TIME, Rig, full_truth, lanes_of, nominal_effects, nominal_values, scene_of
+from .lanes import alike, lanes_of, scene_of
+from .plant import Run, simulate
+from .rig import Rig, full_truth, nominal_effects, nominal_values
 from .strength import Strength
+from .systems.effects import FORMS
 
-FINE_STEP = 2e-5  # s, ten times finer than the step that tuned the strength
-COLUMNS = {"motor_torque": "u", "motor_angle": "qm", "joint_angle": "ql", "cable_torque": "fc", "reference_angle": "qr"}
-UNITS = {
-    "motor_torque": "N*m",
-    "motor_angle": "rad",
-    "joint_angle": "rad",
-    "cable_torque": "N*m",
-    "reference_angle": "rad",
-}
-FORMAT = {
-    "motor_torque": "%.7f",
-    "motor_angle": "%.6f",
-    "joint_angle": "%.7f",
-    "cable_torque": "%.4f",
-    "reference_angle": "%.7f",
-}
+COMMAND = ("motor_torque", "u", "N*m", "%.7f")  # signal, column, unit, digits
 INDISTINGUISHABLE = 3.0  # nats
+Value = TypeVar("Value")
 
 
-def record(rigs: Sequence[Rig], strengths: Sequence[Strength], *, step: float = FINE_STEP) -> list[Run]:
-    """Noisy logs of every rig with its effect at the tuned amplitude, one Run of ten lanes each."""
-    parameters = [full_truth(rig, strength.amplitude) for rig, strength in zip(rigs, strengths, strict=True)]
+def record(rigs: Sequence[Rig], strengths: Sequence[Strength], *, step: float | None = None) -> list[Run]:
+    """Noisy logs of every rig with its effect at the tuned amplitude, one Run of ten lanes each; `step` None: the
+    system's fine one.
+    """
+    runs: dict[int, Run] = {}
+    for rows in alike(rigs):
+        part = [rigs[i] for i in rows]
+        amplitudes = [strengths[i].amplitude for i in rows]
+        runs |= dict(zip(rows, _record(part, amplitudes, step=step or part[0].system.fine_step), strict=True))
+    return [runs[i] for i in range(len(rigs))]
+
+
+def _record(rigs: Sequence[Rig], amplitudes: Sequence[float], *, step: float) -> list[Run]:
+    parameters = [full_truth(rig, amplitude) for rig, amplitude in zip(rigs, amplitudes, strict=True)]
     noisy = [True] * len(rigs)
     run = simulate(lanes_of(rigs, parameters, is_noisy=noisy), scene_of(rigs, is_noisy=noisy), step=step)
     runs, first = [], 0
@@ -55,62 +55,76 @@ def write_dataset(rig: Rig, run: Run, folder: Path, *, name: str, description: s
     if (folder / "dataset.toml").exists():
         raise FileExistsError(f"{folder} holds a dataset already: expected a new folder")
     folder.mkdir(parents=True, exist_ok=True)
-    signals = ["motor_torque", *rig.outputs, *(["reference_angle"] if rig.has_controller else [])]
+    signals = _signals(rig)
     for lane, experiment in enumerate(rig.experiments):
-        values = {
-            "motor_torque": run.command[:, lane],
-            "reference_angle": rig.truth["gear_ratio"] * experiment.reference,
-        }
-        values |= {output: run.outputs[i, :, lane] for i, output in enumerate(OUTPUTS)}
-        table = {"t": np.char.mod("%.3f", run.time)} | {COLUMNS[s]: np.char.mod(FORMAT[s], values[s]) for s in signals}
+        values = {COMMAND[0]: run.command[:, lane], rig.system.reference: rig.motor_turns * experiment.reference}
+        values |= {output.name: run.outputs[i, :, lane] for i, output in enumerate(rig.system.outputs)}
+        table = {"t": np.char.mod("%.3f", run.time)}
+        table |= {column: np.char.mod(digits, values[signal]) for signal, column, _, digits in signals}
         pd.DataFrame(table).to_csv(folder / f"{experiment.name}.csv", index=False)
-    (folder / "dataset.toml").write_text(
-        dataset_toml(rig, signals, name=name, description=description), encoding="utf-8"
-    )
+    text = dataset_toml(rig, name=name, description=description)
+    (folder / "dataset.toml").write_text(text, encoding="utf-8")
 
 
-def dataset_toml(rig: Rig, signals: Sequence[str], *, name: str, description: str) -> str:
+def _signals(rig: Rig) -> list[tuple[str, str, str, str]]:
+    """Signal, column, unit and digits of what is logged."""
+    measured = [output[:4] for output in rig.system.outputs if output.name in rig.outputs]
+    reference = (rig.system.reference, "qr", "rad", "%.7f")
+    return [COMMAND, *measured, *([reference] if rig.has_controller else [])]
+
+
+def dataset_toml(rig: Rig, *, name: str, description: str) -> str:
     """Text of dataset.toml, as docs/datasets.md describes it."""
     lines = [
         'format      = "tendonlab-dataset/1"',
         f"name        = {_toml(name)}",
         f"description = {_toml(description)}",
     ]
-    lines += ['time        = { column = "t", unit = "s" }', "", "[system]", 'kind = "two_inertia"', 'axis = "rotary"']
-    lines += [f"nominal_effects = {_toml(list(nominal_effects(rig)))}", "", "[system.parameters]"]
+    lines += ['time        = { column = "t", unit = "s" }', "", "[system]", f"kind = {_toml(rig.system.kind)}"]
+    lines += ['axis = "rotary"', f"nominal_effects = {_toml(list(nominal_effects(rig)))}", "", "[system.parameters]"]
     lines += [
-        f"{key} = {{ value = {_toml(value)}, sd = {_toml(sd)} }}" for key, (value, sd) in nominal_values(rig).items()
+        f"{key} = {{ value = {_toml(value)}, sd = {_toml(sd)} }}"
+        for key, (value, sd) in _stated(rig, nominal_values(rig)).items()
     ]
     if rig.has_controller:
-        lines += [
-            "",
-            "[controller]",
-            'kind = "pd"',
-            *(f"{key} = {_toml(rig.loop[key])}" for key in ("kp", "kd", "limit")),
-        ]
-        lines += [
-            'measured = "motor_angle"',
-            'reference = "reference_angle"',
-            'derivative_on = "error"',
-            f"sample_time = {SAMPLE_TIME}",
-        ]
-    for signal in signals:
-        lines += ["", f"[signals.{signal}]", f"column = {_toml(COLUMNS[signal])}", f"unit = {_toml(UNITS[signal])}"]
-        if signal == "motor_torque":
+        lines += _controller_lines(rig)
+    resolution = {output.name: output.resolution for output in rig.system.outputs}
+    for signal, column, unit, _ in _signals(rig):
+        lines += ["", f"[signals.{signal}]", f"column = {_toml(column)}", f"unit = {_toml(unit)}"]
+        if signal == COMMAND[0]:
             lines.append("hold = true")
-        if signal in OUTPUTS:
-            lines.append(f"resolution = {RESOLUTION[OUTPUTS.index(signal)]:.7g}")
-    return "\n".join(lines + [line for e in rig.experiments for line in _experiment_lines(e)]) + "\n"
+        if signal in resolution:
+            lines.append(f"resolution = {resolution[signal]:.7g}")
+    return "\n".join(lines + [line for e in rig.experiments for line in _experiment_lines(rig, e)]) + "\n"
 
 
-def _experiment_lines(experiment: Experiment) -> list[str]:
+def _stated(rig: Rig, values: Mapping[str, Value]) -> dict[str, Value]:
+    """`values` under the names that a dataset gives the parameters."""
+    return {rig.system.contract.get(name, name): value for name, value in values.items()}
+
+
+def _controller_lines(rig: Rig) -> list[str]:
+    return [
+        "",
+        "[controller]",
+        'kind = "pd"',
+        *(f"{key} = {_toml(rig.loop[key])}" for key in ("kp", "kd", "limit")),
+        f"measured = {_toml(rig.system.outputs[0].name)}",
+        f"reference = {_toml(rig.system.reference)}",
+        'derivative_on = "error"',
+        f"sample_time = {rig.sample_time}",
+    ]
+
+
+def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
     lines = ["", "[[experiments]]", f"name = {_toml(experiment.name)}", f"file = {_toml(experiment.name + '.csv')}"]
     lines.append(f"split = {_toml(experiment.split)}")
     if experiment.repeat:
         lines.append(f"repeat = {_toml(experiment.repeat)}")
     lines.append(f"start = {_toml(experiment.start)}")
     if experiment.add:
-        lines.append("add = { " + ", ".join(f"{key} = {_toml(value)}" for key, value in experiment.add.items()) + " }")
+        added = _stated(rig, experiment.add)
+        lines.append("add = { " + ", ".join(f"{key} = {_toml(value)}" for key, value in added.items()) + " }")
     return lines
 
 
@@ -122,6 +136,8 @@ def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) ->
     truth = full_truth(rig, strength.amplitude)
     draw: dict[str, object] = {
         "kind": rig.kind,
+        "system": rig.system.kind,
+        "sample_time": rig.sample_time,
         "excitation": rig.excitation,
         "controller": rig.has_controller,
         "repeats": rig.has_repeats,
@@ -143,7 +159,7 @@ def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) ->
         f"accept = {_toml(accept)}",
         "",
         "[truth]",
-        *_table(truth),
+        *_table(_stated(rig, truth)),
         "",
         "[draw]",
         *_table(draw),

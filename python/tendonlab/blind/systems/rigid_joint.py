@@ -1,0 +1,115 @@
+"""One inertia on a rigid transmission, a pendulum:
+
+J q'' = tau - friction - g sin q + known       (load_offset is a constant part of `known`)
+tau = deadzone(u(t - delay)) (1 + gain_error) + offset
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .effects import FRICTION
+from .system import Array, Output, Push, Slot, System
+
+if TYPE_CHECKING:
+    from tendonlab.blind.plant import Lanes, Scene
+
+OUTPUTS = (
+    Output("joint_angle", "q", "rad", "%.7f", 5e-5, 2e-4, 0.99, 2 * np.pi / 131072),
+    Output("joint_velocity", "w", "rad/s", "%.5f", 5e-3, 3e-3, 0.97, 1e-3),
+)
+TYPICAL = {
+    "joint_inertia": 0.05,
+    "gravity_torque": 1.8,
+    "joint_viscous": 0.08,
+    "joint_coulomb": 0.15,
+}
+CONSTANTS = ("load:offset", "actuation:offset", "joint:asymmetry", "sensor.joint_angle:bias")  # torque or angle
+DELAYS = ("actuation:delay", "sensor.joint_angle:delay", "sensor.joint_velocity:delay")
+RIVALS = {group: tuple(other for other in CONSTANTS if other != group) for group in CONSTANTS}
+RIVALS |= {group: tuple(other for other in DELAYS if other != group) for group in DELAYS}
+RIVALS |= {
+    "joint:stribeck": ("joint:presliding", "joint:load_dependence"),
+    "joint:presliding": ("joint:stribeck",),
+    "joint:load_dependence": ("actuation:gain_error", "joint:stribeck"),
+    "actuation:gain_error": ("joint:load_dependence",),
+}
+
+
+def sizes(truth: Mapping[str, float]) -> dict[str, float]:
+    constant = 0.05 * truth["gravity_torque"]
+    return {
+        "load:offset": constant,
+        "actuation:offset": constant,
+        "actuation:gain_error": 0.08,
+        "actuation:deadband": 0.3 * truth["joint_coulomb"],
+        "sensor.joint_angle:bias": 0.02,
+        "sensor.joint_velocity:bias": 0.02,
+    } | dict.fromkeys(DELAYS, 0.003)
+
+
+class RigidJoint:
+    """The bodies of n lanes: one row."""
+
+    def __init__(self, lanes: Lanes, step: float) -> None:
+        self.lanes, self.step = lanes, step
+        self.inertia = lanes.get("joint_inertia")[None, :]
+        self.gravity, self.pull = lanes.get("gravity_torque"), lanes.get("load_offset")
+
+    def rest(self, scene: Scene) -> Array:
+        """Static equilibrium under the controller's first reference, frictionless; zeros without a controller."""
+        lanes, state = self.lanes, np.zeros((2, self.lanes.size))
+        if scene.controller is None:
+            return state
+        for _ in range(30):  # contracts by g/kp, at most a third
+            torque = self.gravity * np.sin(state[0]) - self.pull - lanes.get("actuation_offset")
+            wanted = torque / (1.0 + lanes.get("actuation_gain_error"))
+            state[0] = scene.reference[0] - lanes.get("sensor.joint_angle_bias") - wanted / scene.controller.kp
+        return state
+
+    def push(self, q: Array, v: Array, drive: Array, known: Array | None) -> Push:
+        weight = self.gravity * np.sin(q[0]) - self.pull
+        if known is not None:
+            weight = weight - known
+        return Push((drive - weight)[None, :], drive, drive, v[0], weight)
+
+    def load(self, push: Push) -> Array:
+        return np.asarray(0.5 * (push.drive + push.weight))[None, :]
+
+    def measure(self, q: Array, v: Array) -> list[Array]:
+        return [q[0], v[0]]
+
+    def within(self, q: Array, old: Array, new: Array, push: Push) -> tuple[list[Array], list[Array]]:
+        return [q[0], 0.5 * (old[0] + new[0])], [self.step * 0.5 * (old[0] + new[0]), new[0] - old[0]]
+
+
+RIGID_JOINT = System(
+    kind="rigid_joint",
+    title="Synthetic rigid joint with gravity under a sampled position loop",
+    slots=(Slot("joint", 1.0, 1.0),),
+    outputs=OUTPUTS,
+    optional=("joint_velocity", 0.5, ("sensor.joint_velocity:bias", "sensor.joint_velocity:delay")),
+    effects=(
+        *(f"joint:{effect}" for effect in FRICTION),
+        "load:offset",
+        *(f"actuation:{effect}" for effect in ("offset", "gain_error", "deadband", "delay")),
+        *(f"sensor.{output.name}:{effect}" for effect in ("bias", "delay") for output in OUTPUTS),
+    ),
+    nominal_effects=("joint:viscous", "joint:coulomb"),
+    typical=TYPICAL,
+    contract={"joint_inertia": "inertia", "joint_coulomb": "coulomb", "joint_viscous": "viscous"},
+    sizes=sizes,
+    rivals=RIVALS,
+    inertia=lambda truth: truth["joint_inertia"],
+    bandwidth=(12.0, 18.0),
+    limit=8.0,
+    reference="reference_angle",
+    sample_times=(0.01, 0.004, 0.001),
+    duration=5.0,
+    coarse_step=5e-4,
+    fine_step=5e-5,
+    mechanics=RigidJoint,
+)

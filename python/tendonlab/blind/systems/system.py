@@ -1,0 +1,114 @@
+"""What the generator has to know about a kind of rig: bodies, sensors, effects and their sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from tendonlab.blind.plant import Lanes, Scene
+
+Array = NDArray[np.float64]
+SETTLE = 0.8  # s before a log begins
+COLOUR_TIME = 0.002  # s, the period for which `Output.colour` is stated
+
+
+class Slot(NamedTuple):
+    """A body with friction: its name, and a usual speed, rad/s, and load, N*m, which scale the alternative laws."""
+
+    name: str
+    speed: float
+    load: float
+
+
+class Output(NamedTuple):
+    """A sensor: how it is logged, and one unit of its noise (white sd, coloured sd and its AR1 coefficient at 2 ms)."""
+
+    name: str
+    column: str
+    unit: str
+    digits: str
+    white: float
+    coloured: float
+    colour: float
+    resolution: float
+
+
+class Push(NamedTuple):
+    """What acts on the bodies, N*m: `force` (slots, n) without friction, the rest (n,). `rate`: of the cable."""
+
+    force: Array
+    drive: Array
+    cable: Array
+    rate: Array
+    weight: Array
+
+
+class Mechanics(Protocol):
+    """The bodies of n lanes and what they exert on each other; positions and velocities are (bodies, n)."""
+
+    inertia: Array
+
+    def rest(self, scene: Scene) -> Array:
+        """Positions, then velocities, of the static equilibrium under the first reference."""
+
+    def push(self, q: Array, v: Array, drive: Array, known: Array | None) -> Push:
+        """Torques on the bodies, N*m; `drive` comes from the actuator, `known` is added to the joint."""
+
+    def load(self, push: Push) -> Array:
+        """Load that each slot carries, N*m, (slots, n)."""
+
+    def measure(self, q: Array, v: Array) -> list[Array]:
+        """What perfect sensors would read."""
+
+    def within(self, q: Array, old: Array, new: Array, push: Push) -> tuple[list[Array], list[Array]]:
+        """Outputs at the middle of a step and their change over the step; `old` and `new`: velocities around it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class System:
+    """One kind of rig. Names of parameters are the generator's; `contract` maps those that a dataset calls otherwise.
+
+    `typical`: parameters, SI, drawn within 25 % except for the `exact` ones. `sizes`: truth -> size of an effect of
+    amplitude 1, SI, of those that are no friction. `rivals`: effects that can look like an effect. `optional`: an
+    output, the share of the rigs that lack it, and the effects that cannot be seen without it. `bandwidth`: of the
+    position loop, rad/s; `limit`: of its command, N*m. The controller acts on the first output.
+    """
+
+    kind: str
+    title: str
+    slots: tuple[Slot, ...]
+    outputs: tuple[Output, ...]
+    optional: tuple[str, float, tuple[str, ...]]
+    effects: tuple[str, ...]
+    nominal_effects: tuple[str, ...]
+    typical: Mapping[str, float]
+    exact: tuple[str, ...] = ()
+    contract: Mapping[str, str]
+    sizes: Callable[[Mapping[str, float]], Mapping[str, float]]
+    rivals: Mapping[str, tuple[str, ...]]
+    inertia: Callable[[Mapping[str, float]], float]
+    bandwidth: tuple[float, float]
+    limit: float
+    reference: str
+    sample_times: tuple[float, ...]
+    duration: float
+    coarse_step: float
+    fine_step: float
+    mechanics: Callable[[Lanes, float], Mechanics]
+
+    @property
+    def output_names(self) -> tuple[str, ...]:
+        return tuple(output.name for output in self.outputs)
+
+    def column(self, name: str) -> Array:
+        """One number of every output, (outputs,)."""
+        return np.array([getattr(output, name) for output in self.outputs])
+
+    def colour(self, sample_time: float) -> Array:
+        """AR1 coefficient of every output's coloured noise."""
+        return np.asarray(self.column("colour") ** (sample_time / COLOUR_TIME))
