@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.blind.rig import draw_rig, effect_parameters, largest_amplitude
-from tendonlab.blind.systems import TWO_INERTIA, System
+from tendonlab.blind.systems import RIGID_JOINT, TWO_INERTIA, System
 
 TRUTH = {
     "gear_ratio": 8.0, "motor_coulomb": 0.03, "motor_viscous": 2e-4, "motor_inertia": 1e-4, "joint_coulomb": 0.2,
@@ -65,3 +65,21 @@ def test_effects_of_a_sign_are_drawn_with_both() -> None:
     draws = [np.random.default_rng(seed) for seed in range(12)]
     rigs = [draw_rig(draw, effect="load:offset", kind="effect", num_samples=20) for draw in draws]
     assert {rig.shape["sign"] for rig in rigs} == {-1.0, 1.0}
+
+
+JOINT = {"joint_inertia": 0.05, "gravity_torque": 1.8, "joint_viscous": 0.08, "joint_coulomb": 0.15}
+
+
+@pytest.mark.parametrize(
+    ("effect", "expected"),
+    [
+        ("joint:stribeck", {"joint_static_excess": 0.15, "joint_stribeck_velocity": 0.05}),
+        ("load:offset", {"load_offset": -0.09}),
+        ("actuation:offset", {"actuation_offset": -0.09}),
+        ("actuation:deadband", {"actuation_deadband": 0.045}),
+        ("actuation:delay", {"actuation_delay": 0.003}),
+        ("sensor.joint_velocity:bias", {"sensor.joint_velocity_bias": -0.02}),
+    ],
+)
+def test_effects_of_a_rigid_joint_have_their_documented_size(effect: str, expected: dict[str, float]) -> None:
+    assert of(effect, 1.0, system=RIGID_JOINT, truth=JOINT) == pytest.approx(expected)

@@ -25,7 +25,7 @@ def test_the_static_excess_adds_to_the_level_and_falls_with_speed(form: int, lef
 def friction(form: int = 0, num: int = 4, **stated: float) -> Friction:
     """Lanes of one form with these parameters."""
     lanes = {name: np.full(num, value) for name, value in stated.items()}
-    return Friction(lanes, scale=np.ones((2, num)), form=np.full(num, form))
+    return Friction(lanes, slots=TWO_INERTIA.slots, scale=np.ones((2, num)), form=np.full(num, form))
 
 
 def joint(*values: float) -> np.ndarray:
@@ -35,7 +35,9 @@ def joint(*values: float) -> np.ndarray:
 
 def test_a_level_scales_from_run_to_run_and_is_never_negative() -> None:
     lanes = {"joint_coulomb": np.full(2, 0.2), "joint_level_asymmetry": np.array([0.5, -3.0])}
-    found = Friction(lanes, scale=np.array([[1.0, 1.0], [1.1, 1.0]]), form=np.zeros(2, dtype=int))
+    found = Friction(
+        lanes, slots=TWO_INERTIA.slots, scale=np.array([[1.0, 1.0], [1.1, 1.0]]), form=np.zeros(2, dtype=int)
+    )
     level = found.level(joint(1.0, 1.0), load=joint(0.0, 0.0), direction=joint(1.0, 1.0))
     assert level[1] == pytest.approx([0.2 * 1.5 * 1.1, 0.0])
 

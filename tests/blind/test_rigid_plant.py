@@ -126,3 +126,24 @@ def test_loop_starts_at_rest_and_converges_with_the_step():
     np.testing.assert_allclose(runs[2][:45], runs[2][0], atol=1e-12)
     assert errors[1] < 0.7 * errors[0]
     assert errors[1] < 5e-5  # the step that tunes the strength: below the angle's floor
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "outputs"),
+    [
+        ("actuation_offset", "load_offset", RIGID_JOINT.output_names),
+        ("actuation_delay", "sensor.joint_angle_delay", ("joint_angle",)),
+    ],
+)
+def test_twins_give_the_same_logs(one: str, other: str, outputs: tuple[str, ...]):
+    """In a loop as well: what cannot be told apart is accepted."""
+    gains = Controller(kp=np.array([11.0]), kd=np.array([1.0]), limit=np.array([8.0]))
+    reference = 0.4 + 0.3 * np.sin(0.02 * np.arange(200))[:, None]
+    stated = {"gravity_torque": GRAVITY, "joint_coulomb": 0.15, "joint_viscous": 0.08}
+    scene = Scene(reference=reference, controller=gains)
+    runs = [simulate(lanes(**stated, **{name: 0.004}), scene, step=2e-4) for name in (one, other)]
+    np.testing.assert_allclose(runs[0].command, runs[1].command, atol=1e-9)
+    names = [name.replace("_delay", ":delay").replace("_offset", ":offset") for name in (one, other)]
+    assert RIGID_JOINT.twins(names[0], outputs) == (names[1],)
+    assert RIGID_JOINT.twins(names[1], outputs) == (names[0],)
+    assert RIGID_JOINT.twins("joint:coulomb", outputs) == ()

@@ -8,6 +8,7 @@ import pytest
 
 from tendonlab.blind import strength
 from tendonlab.blind.strength import ORDER, PRIOR_SD, _Search, _Tuner, _whiten, separations
+from tendonlab.blind.systems import TWO_INERTIA
 
 
 @pytest.fixture
@@ -167,7 +168,8 @@ def test_each_rival_of_an_effect_is_tried() -> None:
     tried = []
 
     class Rivals:
-        rigs = tuple(SimpleNamespace(effect=name) for name in ("actuation:offset", "actuation:delay", "cable:slack"))
+        names = ("actuation:offset", "actuation:delay", "cable:slack")
+        rigs = tuple(SimpleNamespace(effect=name, system=TWO_INERTIA) for name in names)
         truth = noise = np.zeros((3, 1))
 
         def rival(self, effects: list[str]) -> np.ndarray:

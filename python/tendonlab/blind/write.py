@@ -131,10 +131,30 @@ def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
 def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) -> str:
     """Text of the truth file: effects, verdict, accept, [truth] parameters, [draw] how the case came about."""
     verdict = {"effect": "effect", "none": "no_gap", "parameters_only": "parameters_only"}[rig.kind]
-    accept = [name for name, nats in strength.separation.items() if nats < INDISTINGUISHABLE]
-    effect = rig.effect.partition(":")[2]
+    twins = rig.system.twins(rig.effect, rig.outputs)
+    accept = [n for n, nats in strength.separation.items() if nats < INDISTINGUISHABLE or n in twins]
     truth = full_truth(rig, strength.amplitude)
-    draw: dict[str, object] = {
+    lines = ['format = "tendonlab-sealed/1"', f"effects = {_toml([rig.effect] if rig.kind == 'effect' else [])}"]
+    lines += [
+        f"verdict = {_toml(verdict)}",
+        f"accept = {_toml(accept)}",
+        "",
+        "[truth]",
+        *_table(_stated(rig, truth)),
+        "",
+        "[draw]",
+        *_table(_drawn(rig, strength, redrawn)),
+    ]
+    if strength.separation:
+        nats = {name: float(f"{value:.4g}") for name, value in strength.separation.items()}
+        lines += ["", "[separation]  # nats that tell the effect from its rivals; accepted below 3", *_table(nats)]
+    return "\n".join(lines) + "\n"
+
+
+def _drawn(rig: Rig, strength: Strength, redrawn: Sequence[str]) -> dict[str, object]:
+    """How the case came about."""
+    effect = rig.effect.partition(":")[2]
+    return {
         "kind": rig.kind,
         "system": rig.system.kind,
         "sample_time": rig.sample_time,
@@ -153,21 +173,6 @@ def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) ->
         "floor": [float(f"{value:.4g}") for value in strength.floor],
         "redrawn": list(redrawn),
     }
-    lines = ['format = "tendonlab-sealed/1"', f"effects = {_toml([rig.effect] if rig.kind == 'effect' else [])}"]
-    lines += [
-        f"verdict = {_toml(verdict)}",
-        f"accept = {_toml(accept)}",
-        "",
-        "[truth]",
-        *_table(_stated(rig, truth)),
-        "",
-        "[draw]",
-        *_table(draw),
-    ]
-    if strength.separation:
-        nats = {name: float(f"{value:.4g}") for name, value in strength.separation.items()}
-        lines += ["", "[separation]  # nats that tell the effect from its rivals; accepted below 3", *_table(nats)]
-    return "\n".join(lines) + "\n"
 
 
 def _table(values: Mapping[str, object]) -> list[str]:

@@ -51,6 +51,14 @@ def sizes(truth: Mapping[str, float]) -> dict[str, float]:
     } | dict.fromkeys(DELAYS, 0.003)
 
 
+def twins(effect: str, outputs: tuple[str, ...]) -> tuple[str, ...]:
+    """Constant torques add up wherever they act; a late actuator moves like a late angle, if no speed was measured."""
+    pairs = [("actuation:offset", "load:offset")]
+    if "joint_velocity" not in outputs:
+        pairs.append(("actuation:delay", "sensor.joint_angle:delay"))
+    return tuple(other for pair in pairs if effect in pair for other in pair if other != effect)
+
+
 class RigidJoint:
     """The bodies of n lanes: one row."""
 
@@ -103,6 +111,7 @@ RIGID_JOINT = System(
     contract={"joint_inertia": "inertia", "joint_coulomb": "coulomb", "joint_viscous": "viscous"},
     sizes=sizes,
     rivals=RIVALS,
+    twins=twins,
     inertia=lambda truth: truth["joint_inertia"],
     bandwidth=(12.0, 18.0),
     limit=8.0,

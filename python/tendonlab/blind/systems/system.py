@@ -74,9 +74,10 @@ class System:
     """One kind of rig. Names of parameters are the generator's; `contract` maps those that a dataset calls otherwise.
 
     `typical`: parameters, SI, drawn within 25 % except for the `exact` ones. `sizes`: truth -> size of an effect of
-    amplitude 1, SI, of those that are no friction. `rivals`: effects that can look like an effect. `optional`: an
-    output, the share of the rigs that lack it, and the effects that cannot be seen without it. `bandwidth`: of the
-    position loop, rad/s; `limit`: of its command, N*m. The controller acts on the first output.
+    amplitude 1, SI, of those that are no friction. `rivals`: effects that can look like an effect. `twins`: (effect,
+    measured outputs) -> effects that give the same logs, exactly. `optional`: an output, the share of the rigs that
+    lack it, and the effects that cannot be seen without it. `bandwidth`: of the position loop, rad/s; `limit`: of its
+    command, N*m. The controller acts on the first output.
     """
 
     kind: str
@@ -91,6 +92,7 @@ class System:
     contract: Mapping[str, str]
     sizes: Callable[[Mapping[str, float]], Mapping[str, float]]
     rivals: Mapping[str, tuple[str, ...]]
+    twins: Callable[[str, tuple[str, ...]], tuple[str, ...]] = lambda effect, outputs: ()
     inertia: Callable[[Mapping[str, float]], float]
     bandwidth: tuple[float, float]
     limit: float
