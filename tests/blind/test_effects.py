@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tendonlab.blind.description import System
 from tendonlab.blind.rig import draw_rig, effect_parameters, largest_amplitude
-from tendonlab.blind.systems import RIGID_JOINT, TWO_INERTIA, System
+from tendonlab.blind.systems import RIGID_JOINT, TWO_INERTIA
 
 TRUTH = {
     "gear_ratio": 8.0, "motor_coulomb": 0.03, "motor_viscous": 2e-4, "motor_inertia": 1e-4, "joint_coulomb": 0.2,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tendonlab.blind.plant import Controller, Lanes, Run, Scene, simulate
+from tendonlab.blind.description import Controller, Lanes, Scene
+from tendonlab.blind.plant import Run, simulate
 from tendonlab.blind.systems import TWO_INERTIA
 
 RIG = {

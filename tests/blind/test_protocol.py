@@ -116,7 +116,7 @@ def test_the_rigid_joint_lacks_every_effect_that_the_library_knows():
 
 
 def test_a_drawn_rigid_joint_is_a_dataset_of_the_library(tmp_path: Path):
-    draw(2, 2, tmp_path, system="rigid_joint", jobs=1, num_samples=60, step=5e-4, progress=False)
+    draw(2, 2, tmp_path, system="rigid_joint", jobs=1, num_samples=300, step=5e-4, progress=False)
     for case in sorted((tmp_path / "cases").iterdir()):
         dataset, sealed = tl.load(case), read(tmp_path / "sealed" / f"{case.name}.toml")
         assert dataset.kind == "rigid_joint"
@@ -249,6 +249,33 @@ def test_drawn_case_that_was_never_run_counts_as_wrong(drawn: Drawn, tmp_path: P
     assert summary["cases"] == 4
     assert summary["failed"] == 1
     assert summary["verdict right"] == 0.75
+
+
+@pytest.mark.parametrize(
+    ("verdict", "probability", "selected", "recall", "named"),
+    [
+        ("unknown_effect", 0.9, [], 1.0, 0.0),
+        ("unknown_effect", 0.7, ["cable:backlash"], 1.0, 0.0),
+        ("effect", 0.9, ["cable:backlash"], 0.0, 1.0),
+        ("no_gap", 0.9, [], 0.0, 0.0),
+        ("failed", 0.0, [], 0.0, 1.0),
+    ],
+)
+def test_score_of_unknown_causes(
+    tmp_path: Path, verdict: str, probability: float, selected: list[str], recall: float, named: float
+):
+    (tmp_path / "truth").mkdir()
+    truth = 'format = "tendonlab-sealed/1"\neffects = []\nverdict = "unknown_effect"\naccept = []\n[draw]\n'
+    (tmp_path / "truth" / "case-001.toml").write_text(truth + 'cause = "bump"\nsystem = "two_inertia"\n')
+    effects = [{"element": "cable", "effect": "backlash", "probability": probability}]
+    report = tmp_path / "case-001" / "report.json"
+    report.parent.mkdir()
+    report.write_text(json.dumps({"verdict": verdict, "selected": selected, "effects": effects}))
+    told = {"verdict": verdict, "sha256": hashlib.sha256(report.read_bytes()).hexdigest()}
+    (tmp_path / "verdicts.json").write_text(json.dumps({"reports": {"case-001": told}}))
+    result = score(tmp_path / "truth", tmp_path)
+    assert result.summary["unknown recall"] == result.causes.loc["bump", "unknown_hit"] == recall
+    assert result.summary["unknown named with P > 0.8"] == named
 
 
 def test_score_keeps_cases_with_and_without_repeats_apart(

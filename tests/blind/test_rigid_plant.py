@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
-from tendonlab.blind.plant import Controller, Lanes, Run, Scene, simulate
+from tendonlab.blind.description import Controller, Lanes, Scene
+from tendonlab.blind.plant import Run, simulate
 from tendonlab.blind.systems import RIGID_JOINT
 
 INERTIA, GRAVITY = 0.05, 1.8

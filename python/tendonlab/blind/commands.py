@@ -37,6 +37,8 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     drawing.add_argument("--system", default="two_inertia", metavar="KIND", help=text)
     text = "share of the cases that repeat an experiment, 0 to 1 (default 1)"
     drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
+    text = "share of the cases whose cause the library lacks, 0 to 1 (default 0)"
+    drawing.add_argument("--unknown", type=float, default=0.0, metavar="SHARE", dest="unknown_share", help=text)
     drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
 
     text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
@@ -63,7 +65,7 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
-    options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "jobs")}
+    options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "unknown_share", "jobs")}
     print(draw(given.seed, given.count, given.out, **options))
     return 0
 

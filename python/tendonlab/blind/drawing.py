@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from . import unknown
 from .planning import Wanted, plan
-from .rig import Rig, draw_rig
+from .rig import LACKING, Rig, draw_rig
 from .strength import Strength, tune
 from .systems import SYSTEMS
 from .write import record, sealed_toml, write_dataset
@@ -29,6 +30,7 @@ def draw(
     sealed: Path | str | None = None,
     system: str = "two_inertia",
     repeats: float = 1.0,
+    unknown_share: float = 0.0,
     jobs: int = 2,
     num_samples: int | None = None,
     step: float | None = None,
@@ -39,12 +41,13 @@ def draw(
 
     `system`: "two_inertia", "rigid_joint", or "mixed" for both.
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
+    The share `unknown_share` lacks an effect that the library does not have either.
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
     FileExistsError if one of the two folders exists.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
-    wanted = list(enumerate(plan(seed, count, system=system, repeats=repeats)))
+    wanted = list(enumerate(plan(seed, count, system=system, repeats=repeats, unknown_share=unknown_share)))
     _make_folders(cases, sealed)
     batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
     work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
@@ -85,7 +88,7 @@ def _draw_batch(
             for i, wanted in open_cases.items()
         }
         for (i, rig), strength in zip(rigs.items(), tune(list(rigs.values())), strict=True):
-            if rig.kind != "effect" or strength.met or (strength.limited and strength.gap_noise >= 1.0):
+            if rig.kind not in LACKING or strength.met or (strength.limited and strength.gap_noise >= 1.0):
                 settled[i] = (rig, strength)
                 del open_cases[i]
             else:
@@ -108,7 +111,8 @@ def _columns(settled: dict[int, tuple[Rig, Strength]]) -> tuple[list[Rig], list[
 
 def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int | None) -> Rig:
     system = SYSTEMS[wanted.system]
-    effect, effects = wanted.effect, system.effects
+    effect = wanted.effect
+    effects = unknown.causes(system.kind) if wanted.kind == "unknown" else system.effects
     if effect and tries >= MAX_TRIES:  # out of its reach on any of these rigs: another effect takes the place
         effect = effects[(effects.index(effect) + tries // MAX_TRIES) % len(effects)]
     return draw_rig(

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .systems.system import Slot
+from .description import Slot
 
 Array = NDArray[np.float64]
 

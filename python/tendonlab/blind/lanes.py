@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from .plant import Controller, Lanes, Scene
+from . import unknown
+from .description import Controller, Lanes, Scene
 from .rig import Rig
 
 Array = NDArray[np.float64]
@@ -36,14 +37,21 @@ def lanes_of(
             rows.append({name: value + experiment.add.get(name, 0.0) for name, value in values.items()})
     names = sorted({name for row in rows for name in row})
     stacked = {name: np.array([row.get(name, 0.0) for row in rows]) for name in names}
-    scatters = zip(rigs, is_noisy, strict=True)
-    slots = len(rigs[0].system.slots)
-    scale = [_scatter(rig) if noisy else np.ones((slots, len(rig.experiments))) for rig, noisy in scatters]
+    scale = [_scale(*case) for case in zip(rigs, parameters, is_noisy, strict=True)]
     form = np.concatenate([np.full(len(rig.experiments), rig.form if with_effect else 0) for rig in rigs])
     effects = tuple(rig.effect if with_effect else "" for rig in rigs for _ in rig.experiments)
     return Lanes(
         system=rigs[0].system, parameters=stacked, scale=np.concatenate(scale, axis=1), form=form, effect=effects
     )
+
+
+def _scale(rig: Rig, values: Mapping[str, float], noisy: bool) -> Array:
+    """Factor on the friction of every slot and run."""
+    scale = _scatter(rig) if noisy else np.ones((len(rig.system.slots), len(rig.experiments)))
+    if "warming" in values:
+        starts = np.array([experiment.start for experiment in rig.experiments])
+        scale = scale * unknown.warming(starts, share=values["warming"], time=values["warming_time"])
+    return scale
 
 
 def _scatter(rig: Rig) -> Array:

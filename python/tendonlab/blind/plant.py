@@ -8,48 +8,18 @@ first measured output closes the loop.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .description import Lanes, Scene
 from .friction import Friction
 from .sensing import Reading
-from .systems import System
+from .unknown import Causes
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Controller:
-    """u_k = kp e_k + kd (e_k - e_(k-1))/T, e = reference - first output as measured, clipped to +-limit; arrays (n,),
-    SI.
-    """
-
-    kp: Array
-    kd: Array
-    limit: Array
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scene:
-    """Inputs of n lanes. `reference`: of the first output, rad, (num_samples, n), or the command itself, N*m, where
-    there is no controller.
-
-    `num_settle` first samples are not logged. `noise`: added to the readings, (outputs, num_samples, n); `resolution`:
-    (outputs, n), 0 for none. `initial`: (2 slots, n) positions, then velocities; absent: the static equilibrium.
-    `known`: joint torque, N*m, (num_samples, n).
-    """
-
-    reference: Array
-    controller: Controller | None = None
-    sample_time: float = 0.002
-    num_settle: int = 0
-    noise: Array | None = None
-    resolution: Array | None = None
-    known: Array | None = None
-    initial: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,41 +32,6 @@ class Run:
     command: Array
     outputs: Array
     state: Array
-
-
-@dataclass(frozen=True, kw_only=True)
-class Lanes:
-    """n rigs of one system: parameters by name, (n,) each (absent means 0), run-to-run friction factors (slots, n),
-    functional form (n,).
-
-    `form` 0 is the documented one. `effect` names each lane's effect ("joint:coulomb"), for effects whose other form
-    is of a nominal law.
-    """
-
-    system: System
-    parameters: Mapping[str, Array]
-    scale: Array
-    form: NDArray[np.int64]
-    effect: tuple[str, ...] = field(default=())
-
-    @property
-    def size(self) -> int:
-        return int(self.form.size)
-
-    def get(self, name: str) -> Array:
-        value: Array = self.parameters.get(name, np.zeros(self.size))
-        return value
-
-    def friction(self) -> Friction:
-        slots = self.system.slots
-        laws = Friction(self.parameters, slots=slots, scale=self.scale, form=self.form)
-        for slot, body in enumerate(slots):
-            for effect in ("coulomb", "viscous"):
-                chosen = np.array(
-                    [e == f"{body.name}:{effect}" for e in self.effect] or np.zeros(self.size), dtype=bool
-                )
-                laws.choose_other_form(slot, chosen & (self.form != 0), effect=effect)
-        return laws
 
 
 def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1) -> Run:
@@ -118,13 +53,23 @@ def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1)
     return Run(time=time, command=command, outputs=np.moveaxis(outputs, 1, 0), state=np.moveaxis(state, 1, 0))
 
 
+def _friction(lanes: Lanes) -> Friction:
+    slots = lanes.system.slots
+    laws = Friction(lanes.parameters, slots=slots, scale=lanes.scale, form=lanes.form)
+    for slot, body in enumerate(slots):
+        for effect in ("coulomb", "viscous"):
+            chosen = np.array([e == f"{body.name}:{effect}" for e in lanes.effect] or np.zeros(lanes.size), dtype=bool)
+            laws.choose_other_form(slot, chosen & (lanes.form != 0), effect=effect)
+    return laws
+
+
 class _Plant:
     def __init__(self, lanes: Lanes, scene: Scene, num_steps: int) -> None:
         self.scene, self.num_steps, self.step = scene, num_steps, scene.sample_time / num_steps
         self.gain, self.offset = 1.0 + lanes.get("actuation_gain_error"), lanes.get("actuation_offset")
         self.mechanics = lanes.system.mechanics(lanes, self.step)
         self.kick = self.step / self.mechanics.inertia
-        self.friction = lanes.friction()
+        self.friction = _friction(lanes)
         self.bristle = self.friction.bristle()
         self.plain_limit = self.kick * self.friction.coulomb * self.friction.scale
         self.plain_drag = self.friction.viscous * self.friction.scale
@@ -133,6 +78,8 @@ class _Plant:
         delays = [lanes.get(f"sensor.{name}_delay") for name in outputs]
         self.readings = [Reading(d, sample_time=scene.sample_time, num_steps=num_steps) for d in delays]
         self.has_sensor_delay = any(reading.capture for reading in self.readings)
+        self.causes = Causes(lanes, step=self.step, sample_time=scene.sample_time)
+        self.is_plain = self.friction.is_plain and not self.causes.acts_on_joint
         self.deadband, self.rounded = lanes.get("actuation_deadband"), lanes.form != 0
         self._prepare_actuation(lanes.get("actuation_delay"))
         start = self.mechanics.rest(scene) if scene.initial is None else scene.initial
@@ -184,7 +131,7 @@ class _Plant:
         new, old = self.commands[self.late, lanes], self.commands[self.late + 1, lanes]
         if self.deadband.any():
             new, old = self._beyond_deadband(new), self._beyond_deadband(old)
-        torque = new * self.gain + self.offset
+        torque = self.causes.drive(new * self.gain + self.offset)
         before = old * self.gain + self.offset
         self.q += 0.5 * self.step * self.v
         for j in range(self.num_steps):
@@ -202,14 +149,18 @@ class _Plant:
         old, laws = self.v, self.friction
         push = self.mechanics.push(self.q, old, drive, known)
         force = push.force
-        if laws.is_plain:
+        if self.is_plain:
             force -= self.plain_drag * old
             force *= self.kick
             force += old
             limit = self.plain_limit
         else:
             force -= laws.smooth(old)
+            if self.causes.has_stop:
+                force[-1] += self.causes.torque(self.q[-1])
             level = laws.level(old, load=self.mechanics.load(push), direction=np.sign(old + self.kick * force))
+            if self.causes.acts_on_joint:
+                level[-1] *= self.causes.level(self.q[-1], old[-1])
             if laws.has_bristle:
                 force -= laws.bristle_force(self.bristle, old, level=level, step=self.step)
                 level = np.where(laws.bristled, 0.0, level)

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import unknown
+from .description import SETTLE, System
 from .excitation import Experiment, session
-from .systems import TWO_INERTIA, System
+from .systems import TWO_INERTIA
 from .systems.effects import FORMS, FRICTION, LARGEST, SIGNED, draw_shape, friction
-from .systems.system import SETTLE
 
+LACKING = ("effect", "unknown")  # kinds of cases whose nominal simulator lacks something
 NOMINAL_SPREAD, PARAMETERS_ONLY_SPREAD = 0.12, 0.22
 
 
@@ -20,8 +22,8 @@ class Rig:
     form.
 
     `truth`: the rig without the effect. `shape`: the drawn numbers that fix the effect, except for its amplitude.
-    `noise`: factor on the floor. `kind`: "effect", "none" or "parameters_only". `loop`: kp, kd, limit. `outputs`:
-    those that were measured. `has_bounded_error`: nominal values are 10 to 20 % off, not drawn from a normal.
+    `noise`: factor on the floor. `kind`: "effect", "unknown", "none" or "parameters_only". `loop`: kp, kd, limit.
+    `outputs`: those that were measured. `has_bounded_error`: nominal values are 10 to 20 % off, not normally drawn.
     """
 
     system: System
@@ -121,6 +123,8 @@ def effect_parameters(rig: Rig, amplitude: float) -> dict[str, float]:
     truth.
     """
     element, _, effect = rig.effect.partition(":")
+    if element == unknown.PREFIX:
+        return unknown.parameters(effect, amplitude, truth=rig.truth, seed=rig.seed)
     if effect in FRICTION:
         return friction(rig.effect, amplitude, truth=rig.truth, shape=rig.shape)
     size = rig.system.sizes(rig.truth)[rig.effect]
@@ -129,7 +133,7 @@ def effect_parameters(rig: Rig, amplitude: float) -> dict[str, float]:
 
 def largest_amplitude(rig: Rig) -> float:
     """Physical limit of the amplitude."""
-    return LARGEST[rig.effect.partition(":")[2]]
+    return (LARGEST | unknown.LARGEST)[rig.effect.partition(":")[2]]
 
 
 def full_truth(rig: Rig, amplitude: float) -> dict[str, float]:

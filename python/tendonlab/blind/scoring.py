@@ -15,6 +15,7 @@ import pandas as pd
 from .runner import REPORT, VERDICTS, sha256
 
 BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
+SURE = 0.8  # probability above which a report names an effect with confidence
 HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
 
 
@@ -22,7 +23,8 @@ HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit
 class Score:
     """`cases`: one row per case, indexed by its id. `summary`: shares over all. `verdicts`: truth by verdict, counts.
 
-    `parts`: the summary of the cases with and without repeats. `strengths`: shares by gap/noise. `effects`: shares by
+    `parts`: the summary of the cases with and without repeats, and of each system. `causes`: shares by unknown cause.
+    `strengths`: shares by gap/noise. `effects`: shares by
     true effect.
     """
 
@@ -32,6 +34,7 @@ class Score:
     verdicts: pd.DataFrame
     strengths: pd.DataFrame
     effects: pd.DataFrame
+    causes: pd.DataFrame
 
     def __str__(self) -> str:
         lines = [f"{name:<28s} {value:.3g}" for name, value in self.summary.items()]
@@ -40,7 +43,9 @@ class Score:
             ("verdict (truth in rows)", self.verdicts),
             ("by gap/noise", self.strengths),
             ("by effect", self.effects),
+            ("by unknown cause", self.causes),
         ]
+        tables = [(title, table) for title, table in tables if len(table)]
         blocks = [f"{title}\n{table.to_string(float_format='%.2f')}" for title, table in tables]
         return "\n\n".join(["\n".join(lines), *blocks])
 
@@ -95,7 +100,7 @@ def _report(reports: Path, name: str, verdict: Mapping[str, Any]) -> dict[str, A
 
 def _facts(truth: Mapping[str, Any]) -> dict[str, object]:
     draw = truth.get("draw", {})
-    names = ("gap_noise", "excitation", "controller", "repeats", "form", "is_documented_form")
+    names = ("system", "cause", "gap_noise", "excitation", "controller", "repeats", "form", "is_documented_form")
     drawn = {name: draw.get(name) for name in names} | {"repeats": draw.get("repeats", True)}  # once all cases had them
     return {"effect": ",".join(truth["effects"]), "truth": truth["verdict"]} | drawn
 
@@ -115,6 +120,9 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
         "seconds": float(report.get("seconds", np.nan)),
     }
     right = {*truth["effects"], *truth.get("accept", [])}
+    if truth["verdict"] == "unknown_effect":
+        named = [float(e["probability"]) for e, name in zip(ranked, names, strict=True) if name in selected]
+        return found | {"unknown_hit": found["verdict_hit"], "unknown_named": failed or max(named, default=0.0) > SURE}
     if not truth["effects"]:
         return found | {"false_alarm": bool(selected) or report["verdict"] in ("effect", "unknown_effect", "failed")}
     first = names[0] if names else ""
@@ -138,7 +146,7 @@ def _shrinkage(report: Mapping[str, Any]) -> float:
 
 
 def _tables(cases: pd.DataFrame) -> Score:
-    for name in (*HITS, "false_alarm"):
+    for name in (*HITS, "false_alarm", "unknown_hit", "unknown_named"):
         if name not in cases:
             cases[name] = np.nan
         cases[name] = cases[name].astype(float)
@@ -151,12 +159,15 @@ def _tables(cases: pd.DataFrame) -> Score:
         verdicts=pd.crosstab(cases["truth"], cases["verdict"]),
         strengths=_shares(single, cells),
         effects=_shares(single, single["effect"]),
+        causes=_by_cause(cases[cases["truth"] == "unknown_effect"]),
     )
 
 
 def _parts(cases: pd.DataFrame) -> dict[str, pd.DataFrame]:
     repeats = cases["repeats"].astype(bool)
     parts = {"with repeats": cases[repeats], "without repeats": cases[~repeats]}
+    if cases["system"].nunique() > 1:
+        parts |= {str(name): part for name, part in cases.groupby("system")}
     return {name: part for name, part in parts.items() if len(part)}
 
 
@@ -167,10 +178,19 @@ def _summary(cases: pd.DataFrame) -> dict[str, float]:
     summary["verdict right"] = _mean(cases["verdict_hit"])
     for truth in ("no_gap", "parameters_only"):
         summary[f"false alarms on {truth}"] = _mean(cases.loc[cases["truth"] == truth, "false_alarm"])
+    summary["unknown recall"] = _mean(cases["unknown_hit"])
+    summary[f"unknown named with P > {SURE}"] = _mean(cases["unknown_named"])
     summary["median shrinkage"] = float(single["shrinkage"].median()) if len(single) else float("nan")
     summary["seconds per case"] = _mean(cases["seconds"])
     summary["failed"] = float(cases["failed"].sum())
     return summary
+
+
+def _by_cause(cases: pd.DataFrame) -> pd.DataFrame:
+    groups = cases.groupby("cause")
+    table = groups[["unknown_hit", "unknown_named"]].mean()
+    table.insert(0, "cases", groups.size())
+    return table
 
 
 def _mean(values: pd.Series) -> float:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from .lanes import alike, lanes_of, scene_of
 from .plant import simulate
 from .rig import (
+    LACKING,
     Rig,
     effect_parameters,
     free_parameters,
@@ -63,7 +64,7 @@ def tune(rigs: Sequence[Rig]) -> list[Strength]:
     out: dict[int, Strength] = {}
     for group in alike(rigs):
         for has_effect, search in ((True, _tune_effects), (False, _measure)):
-            rows = [i for i in group if (rigs[i].kind == "effect") == has_effect]
+            rows = [i for i in group if (rigs[i].kind in LACKING) == has_effect]
             out |= dict(zip(rows, search([rigs[i] for i in rows]) if rows else [], strict=True))
     return [out[i] for i in range(len(rigs))]
 
@@ -104,8 +105,8 @@ class _Search:
 
     def __init__(self, rigs: Sequence[Rig]) -> None:
         self.everyone = np.arange(len(rigs))
-        self.has_effect = np.array([rig.kind == "effect" for rig in rigs])
-        self.largest = np.array([largest_amplitude(rig) if rig.kind == "effect" else 0.0 for rig in rigs])
+        self.has_effect = np.array([rig.kind in LACKING for rig in rigs])
+        self.largest = np.array([largest_amplitude(rig) if rig.kind in LACKING else 0.0 for rig in rigs])
         self.target = np.log([rig.target for rig in rigs])
         self.amplitude = np.where(self.has_effect, np.minimum(0.3, self.largest), 0.0)
         self.gap = np.zeros(len(rigs))

@@ -13,12 +13,13 @@ import pandas as pd
 from .excitation import Experiment
 from .lanes import alike, lanes_of, scene_of
 from .plant import Run, simulate
-from .rig import Rig, full_truth, nominal_effects, nominal_values
+from .rig import LACKING, Rig, full_truth, nominal_effects, nominal_values
 from .strength import Strength
 from .systems.effects import FORMS
 
 COMMAND = ("motor_torque", "u", "N*m", "%.7f")  # signal, column, unit, digits
 INDISTINGUISHABLE = 3.0  # nats
+VERDICTS = {"none": "no_gap", "unknown": "unknown_effect"}  # the other kinds are called like their verdict
 Value = TypeVar("Value")
 
 
@@ -130,7 +131,7 @@ def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
 
 def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) -> str:
     """Text of the truth file: effects, verdict, accept, [truth] parameters, [draw] how the case came about."""
-    verdict = {"effect": "effect", "none": "no_gap", "parameters_only": "parameters_only"}[rig.kind]
+    verdict = VERDICTS.get(rig.kind, rig.kind)
     twins = rig.system.twins(rig.effect, rig.outputs)
     accept = [n for n, nats in strength.separation.items() if nats < INDISTINGUISHABLE or n in twins]
     truth = full_truth(rig, strength.amplitude)
@@ -156,6 +157,7 @@ def _drawn(rig: Rig, strength: Strength, redrawn: Sequence[str]) -> dict[str, ob
     effect = rig.effect.partition(":")[2]
     return {
         "kind": rig.kind,
+        "cause": effect if rig.kind == "unknown" else "",
         "system": rig.system.kind,
         "sample_time": rig.sample_time,
         "excitation": rig.excitation,
@@ -164,7 +166,7 @@ def _drawn(rig: Rig, strength: Strength, redrawn: Sequence[str]) -> dict[str, ob
         "form": FORMS.get(effect, ("documented",))[rig.form] if rig.kind == "effect" else "documented",
         "is_documented_form": rig.form == 0 or rig.kind != "effect",
         "gap_noise": round(strength.gap_noise, 4),
-        "target": round(rig.target, 4) if rig.kind == "effect" else 0.0,
+        "target": round(rig.target, 4) if rig.kind in LACKING else 0.0,
         "nominal_gap_noise": round(strength.nominal_gap_noise, 4),
         "limited": strength.limited,
         "met": strength.met,

@@ -7,15 +7,12 @@ tau = deadzone(u(t - delay)) (1 + gain_error) + offset
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .effects import FRICTION
-from .system import Array, Output, Push, Slot, System
+from tendonlab.blind.description import Array, Lanes, Output, Push, Scene, Slot, System
 
-if TYPE_CHECKING:
-    from tendonlab.blind.plant import Lanes, Scene
+from .effects import FRICTION
 
 OUTPUTS = (
     Output("joint_angle", "q", "rad", "%.7f", 5e-5, 2e-4, 0.99, 2 * np.pi / 131072),

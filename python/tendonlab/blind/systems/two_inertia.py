@@ -8,15 +8,13 @@ f = k deadzone(qm/N - ql, backlash/2) + c d/dt(qm/N - ql), c only while a flank 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .effects import FRICTION
-from .system import Array, Output, Push, Slot, System
+from tendonlab.blind.description import Array, Lanes, Output, Push, Scene, Slot, System
+from tendonlab.blind.unknown import creep
 
-if TYPE_CHECKING:
-    from tendonlab.blind.plant import Lanes, Scene
+from .effects import FRICTION
 
 OUTPUTS = (
     Output("motor_angle", "qm", "rad", "%.6f", 2e-4, 8e-4, 0.995, 2 * np.pi / 16384),
@@ -84,6 +82,9 @@ class TwoInertia:
         self.gravity, self.half_gap = lanes.get("gravity_torque"), lanes.get("cable_backlash") / 2.0
         self.pull = lanes.get("load_offset")
         self.rounded = lanes.form != 0
+        self.creep_share, time = lanes.get("creep"), lanes.get("creep_time")
+        self.creep_time = np.where(time > 0, time, 1.0)
+        self.crept: Array | None = None
 
     def rest(self, scene: Scene) -> Array:
         """Static equilibrium under the controller's first reference, frictionless; zeros without a controller."""
@@ -102,6 +103,8 @@ class TwoInertia:
     def _cable(self, q: Array, v: Array) -> tuple[Array, Array]:
         """Cable torque at the joint, N*m, and the rate of its stretch, rad/s."""
         stretch, rate = q[0] * self.per_ratio - q[1], v[0] * self.per_ratio - v[1]
+        if self.crept is not None:
+            stretch = stretch - self.crept
         if not self.half_gap.any():
             return self.stiffness * stretch + self.damping * rate, rate
         gap = np.where(self.half_gap > 0, self.half_gap, 1.0)
@@ -112,7 +115,13 @@ class TwoInertia:
         sharp, touches = np.where(self.rounded, soft, sharp), np.where(self.rounded, slope, touches)
         return self.stiffness * sharp + self.damping * touches * rate, rate
 
+    def _creep(self, stretch: Array) -> None:
+        before = self.creep_share * stretch if self.crept is None else self.crept  # starts settled
+        self.crept = creep(before, stretch, share=self.creep_share, time=self.creep_time, step=self.step)
+
     def push(self, q: Array, v: Array, drive: Array, known: Array | None) -> Push:
+        if self.creep_share.any():
+            self._creep(q[0] * self.per_ratio - q[1])
         cable, rate = self._cable(q, v)
         weight = self.gravity * np.sin(q[1]) - self.pull
         if known is not None:

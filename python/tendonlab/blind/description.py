@@ -1,16 +1,13 @@
-"""What the generator has to know about a kind of rig: bodies, sensors, effects and their sizes."""
+"""What the generator has to know about a kind of rig: bodies, sensors, effects and their sizes; and its inputs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from tendonlab.blind.plant import Lanes, Scene
 
 Array = NDArray[np.float64]
 SETTLE = 0.8  # s before a log begins
@@ -46,6 +43,37 @@ class Push(NamedTuple):
     cable: Array
     rate: Array
     weight: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Controller:
+    """u_k = kp e_k + kd (e_k - e_(k-1))/T, e = reference - first output as measured, clipped to +-limit; arrays (n,),
+    SI.
+    """
+
+    kp: Array
+    kd: Array
+    limit: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Inputs of n lanes. `reference`: of the first output, rad, (num_samples, n), or the command itself, N*m, where
+    there is no controller.
+
+    `num_settle` first samples are not logged. `noise`: added to the readings, (outputs, num_samples, n); `resolution`:
+    (outputs, n), 0 for none. `initial`: (2 slots, n) positions, then velocities; absent: the static equilibrium.
+    `known`: joint torque, N*m, (num_samples, n).
+    """
+
+    reference: Array
+    controller: Controller | None = None
+    sample_time: float = 0.002
+    num_settle: int = 0
+    noise: Array | None = None
+    resolution: Array | None = None
+    known: Array | None = None
+    initial: Array | None = None
 
 
 class Mechanics(Protocol):
@@ -114,3 +142,27 @@ class System:
     def colour(self, sample_time: float) -> Array:
         """AR1 coefficient of every output's coloured noise."""
         return np.asarray(self.column("colour") ** (sample_time / COLOUR_TIME))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lanes:
+    """n rigs of one system: parameters by name, (n,) each (absent means 0), run-to-run friction factors (slots, n),
+    functional form (n,).
+
+    `form` 0 is the documented one. `effect` names each lane's effect ("joint:coulomb"), for effects whose other form
+    is of a nominal law.
+    """
+
+    system: System
+    parameters: Mapping[str, Array]
+    scale: Array
+    form: NDArray[np.int64]
+    effect: tuple[str, ...] = field(default=())
+
+    @property
+    def size(self) -> int:
+        return int(self.form.size)
+
+    def get(self, name: str) -> Array:
+        value: Array = self.parameters.get(name, np.zeros(self.size))
+        return value
