@@ -8,7 +8,7 @@ import pytest
 
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.sections.computation import _plainly, _steps
-from tendonlab.report.sections.extent import _overlay_caption
+from tendonlab.report.sections.extent import _overlay_caption, _stages_explained
 from tendonlab.report.sections.next_steps import next_steps
 
 
@@ -72,3 +72,8 @@ def test_a_caption_says_that_outputs_are_left_out_where_more_than_four_were_meas
     stages = dict.fromkeys(("measured", "nominal", "refitted", "with_effect"), rows)
     caption = _overlay_caption(replace(run, floor=dict.fromkeys(rows, 1e-3), **stages))  # type: ignore[arg-type]
     assert ("The 4 outputs that carry most of the gap are drawn" in caption) == said
+
+
+def test_the_stages_say_which_effect_was_added_or_that_none_was(with_effect: Diagnosis) -> None:
+    assert _stages_explained(with_effect).endswith("With effect: Stribeck friction at the joint added.")
+    assert _stages_explained(replace(with_effect, selected=())).endswith("No effect was added.")
