@@ -12,6 +12,7 @@ from tendonlab.diagnosis.search.refit import _goal, strained
 from tendonlab.diagnosis.search.screen import _Score as Score
 from tendonlab.diagnosis.search.screen import _score, _starts, _unit
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
@@ -223,3 +224,34 @@ def test_gains_over_a_model_without_evidence_are_finite() -> None:
     assert made.left_out_gain == 2e9
     share = probabilities([made], {"a"}, DETECT, 4.0)
     assert share["a"] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "there", "expected"),
+    [
+        ("abcdefgh", "xaybz", "abcdefxy"),  # the best four there, of which two are new, take the last places
+        ("abcdefgh", "abcde", "abcdefgh"),
+        ("abcd", "wxyz", "abcdwxyz"),  # four stay
+        ("", "w", "w"),
+    ],
+)
+def test_candidates_that_tuning_hides_are_refitted_as_well(
+    chosen: str, there: str, expected: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def screened(names: str) -> Any:
+        return [SimpleNamespace(effect=name, gain=100.0 - place) for place, name in enumerate(names)]
+
+    monkeypatch.setattr(contest, "at_believed_values", lambda fitter, base: (fitter, base))
+    shop: Any = SimpleNamespace(screen_all=lambda *_: [*screened(there), SimpleNamespace(effect="dim", gain=0.1)])
+    nothing: Any = None
+    found = contest._with_hidden(nothing, nothing, screened(chosen), DETECT, shop)
+    assert "".join(s.effect for s in found) == expected
+
+
+def test_where_believed_values_cannot_be_simulated_the_first_screen_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: Any) -> Any:
+        raise NumericalError("no")
+
+    monkeypatch.setattr(contest, "at_believed_values", fails)
+    nothing: Any = None
+    assert contest._with_hidden(nothing, nothing, [], DETECT, nothing) == []

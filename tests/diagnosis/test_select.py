@@ -55,6 +55,7 @@ class Shop:
 def worthy(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     def set_up(*, worth: bool = True, strained: bool = False) -> None:
         monkeypatch.setattr(contest, "strained", lambda *_: strained)
+        monkeypatch.setattr(contest, "at_believed_values", lambda fitter, base: (fitter, base))
         monkeypatch.setattr(contest, "_worth_adding", lambda *_, **__: worth)
 
     return set_up

@@ -9,14 +9,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tendonlab.diagnosis.search.halves import NEAR_FLOOR, predicts_better
-from tendonlab.diagnosis.search.refit import strained
+from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
+NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 TWIN = 3.0  # nats within which two effects say the same of these data
@@ -74,10 +76,10 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     if not screened:
         return None
     bar = bar_for_further_effect(fitter, largest_gain) if further else DETECT
-    promising = [s for s in screened if s.gain > MIN_SCREEN_GAIN * bar.evidence]
-    chosen = promising[: NUM_REFIT_FURTHER if further else NUM_REFIT]
+    chosen = _promising(screened, bar)[: NUM_REFIT_FURTHER if further else NUM_REFIT]
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
+        chosen = _with_hidden(fitter, base, chosen, bar, shop)
     trials = shop.refit_all(fitter, base, chosen, label)
     established = {t.effect for t in trials if bar.passed(t)}
     leader = trials[0] if trials and trials[0].effect in established else None
@@ -86,6 +88,22 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     fitted = {t.effect for t in trials}
     failed = [s.effect for s in chosen if s.effect not in fitted]
     return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader, failed=failed)
+
+
+def _promising(screened: Sequence[Screened], bar: Bar) -> list[Screened]:
+    return [s for s in screened if s.gain > MIN_SCREEN_GAIN * bar.evidence]
+
+
+def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar, shop: Workshop) -> list[Screened]:
+    """The `chosen` candidates, the last of them replaced by those that only a screen at believed values shows: tuning
+    may hide the true effect behind strained parameters."""
+    try:
+        there = at_believed_values(fitter, base)
+    except NumericalError:
+        return chosen
+    best = _promising(shop.screen_all(*there, "believed values"), bar)[:NUM_HIDDEN]
+    hidden = [s for s in best if s.effect not in {c.effect for c in chosen}]
+    return [*chosen[: max(len(chosen) - len(hidden), NUM_HIDDEN)], *hidden]
 
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:

@@ -90,15 +90,29 @@ def strained(fitter: Fitter, base: Fitted) -> bool:
     return any(abs(x - f.mean) > STRAINED * f.sd for f, x in zip(base.free, base.x, strict=True) if f.name in stated)
 
 
+def at_believed_values(fitter: Fitter, base: Fitted) -> tuple[Fitter, Fitted]:
+    """The `base` with what was stated back at its prior mean, not refitted, under noise as large as its misfit; and the
+    fitter under that noise. Raises NumericalError where it cannot be simulated."""
+    system = _believed(fitter, base, base.system)
+    misfit = fitter.fit(system, added=base.added, initial=base.initial, solve=False).whitened_square
+    under = fitter.under(max(1.0, misfit))
+    return under, under.fit(system, added=base.added, initial=base.initial, solve=False)
+
+
+def _believed(fitter: Fitter, base: Fitted, system: System) -> System:
+    """The `system` with every free parameter of `base` that was stated at its prior mean."""
+    stated = fitter.case.dataset.parameters
+    free = [f for f in base.free if f.name in stated and f.name in system.parameters]
+    return system.with_parameters({f.name: f.value(f.mean) for f in free})
+
+
 def _cooled(
     fitter: Fitter, base: Fitted, system: System, added: Sequence[str]
 ) -> tuple[System, tuple[tuple[float, ...], ...]]:
     """A start from the nominal values: fits under noise as large as the misfit, as long as each fit halves the misfit.
 
     Under so much noise, parameters that the data hardly determine stay at their nominal values."""
-    stated = fitter.case.dataset.parameters
-    believed = [f for f in base.free if f.name in stated and f.name in system.parameters]
-    system = system.with_parameters({f.name: f.value(f.mean) for f in believed})
+    system = _believed(fitter, base, system)
     fit = fitter.fit(system, added=added, solve=False)
     misfit = fit.whitened_square
     for _ in range(NUM_COOLINGS):
