@@ -38,11 +38,12 @@ def small_rig(effect: str, *, kind: str = "effect", system: str = "two_inertia")
 
 def readings(rig: Rig, values: dict[str, float], *, noisy: bool = False, with_effect: bool) -> np.ndarray:
     lanes = lanes_of([rig], [values], is_noisy=[noisy], with_effect=with_effect)
-    return simulate(lanes, scene_of([rig], is_noisy=[noisy]), step=4e-4, stride=4).outputs
+    return simulate(lanes, scene_of([rig], is_noisy=[noisy]), step=rig.sample_time / 5, stride=4).outputs
 
 
-def test_gap_over_noise_is_what_an_independent_fit_finds():
-    rig = small_rig("joint:coulomb")
+@pytest.mark.parametrize(("system", "effect"), [("two_inertia", "joint:coulomb"), ("rigid_joint", "joint:stribeck")])
+def test_gap_over_noise_is_what_an_independent_fit_finds(system: str, effect: str):
+    rig = small_rig(effect, system=system)
     (strength,) = tune([rig])
     truth = full_truth(rig, strength.amplitude)
     clean = readings(rig, truth, with_effect=True)
