@@ -21,12 +21,14 @@ from tendonlab.papers.s2.rig import log_of_twin, nut_input, parameters, system, 
 from tendonlab.papers.s2.trapezoids import Reference, reference
 from tendonlab.papers.s2.twin import PID, last_sense, measured, simulate
 from tendonlab.papers.s2.values import Constants, constants, identified
+from tendonlab.papers.s2.voltage import VoltagePID, feedforward_voltage, track
 
 __all__ = [
     "PID",
     "Constants",
     "Estimate",
     "Reference",
+    "VoltagePID",
     "bushing_bench",
     "bushing_law",
     "bushing_loop",
@@ -39,6 +41,7 @@ __all__ = [
     "energy_drift",
     "equations",
     "feedforward",
+    "feedforward_voltage",
     "figures",
     "fit_bushing",
     "fit_cable",
@@ -61,5 +64,6 @@ __all__ = [
     "simulate",
     "split_common_friction",
     "system",
+    "track",
     "write_dataset",
 ]

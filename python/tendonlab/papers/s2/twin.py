@@ -8,7 +8,7 @@ at low tension.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import pi, sin
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,7 @@ from tendonlab.errors import ParameterError
 from tendonlab.papers.s2 import equations
 from tendonlab.papers.s2.cable import Spring
 from tendonlab.papers.s2.equations import Array
+from tendonlab.papers.s2.joint import Joint
 from tendonlab.papers.s2.trapezoids import Reference
 from tendonlab.papers.s2.values import Constants
 
@@ -72,38 +73,22 @@ def _steps(
 ) -> dict[str, Array]:
     """Theta, its rate, common elongation e of cable 1 (that of cable 2 is -e), and its rate at every step."""
     h = reference.step
-    fixed = float(equations.inertia(of, np.pi / 2.0))
-    swinging = float(equations.inertia(of, 0.0)) - fixed
     wanted = (of.r * np.cos(reference.angle) * reference.velocity).tolist()
     aims, aim_rates = reference.angle.tolist(), reference.velocity.tolist()
-    theta, rate = aims[0], 0.0
-    e = spring.holding(float(equations.holding_difference(of, theta)))
-    u = integral = stretch = 0.0
+    joint = Joint.at_rest(of, spring, h, aims[0], path_error=path_error)
+    u = integral = 0.0
     rows = []
     for nut, aim, aim_rate in zip(wanted, aims, aim_rates, strict=True):
         if controller is not None:
-            error = aim - theta
+            error = aim - joint.theta
             integral += h * error
-            nut += controller.kp * error + controller.ki * integral + controller.kd * (aim_rate - rate)
+            nut += controller.kp * error + controller.ki * integral + controller.kd * (aim_rate - joint.rate)
             nut = min(max(nut, -controller.limit), controller.limit)
         if ripple:
             nut *= 1.0 + ripple * sin(2.0 * pi * u / of.p)
-        rows.append((theta, rate, nut, e, stretch))
-        arm = of.r * cos(theta)
-        inertia = fixed + swinging * cos(theta)
-        near, far = cos(theta + of.phi), cos(2.0 * theta + of.phi)
-        gravity = -of.g * (of.m_1 * of.d_11 * near + of.m_2 * (of.l_1 * near + 2.0 * of.d_21 * far))
-        path, slope = path_error * (1.0 - cos(theta)), path_error * sin(theta)
-        (one, stiff_1), (two, stiff_2) = spring.pull(path + e), spring.pull(path - e)
-        stiffness = stiff_1 + stiff_2
-        pull = arm * (one - two + (h * stiffness + 2.0 * of.c) * nut)
-        pull -= slope * (one + two + 2.0 * of.c * slope * rate)
-        whirl = 2.0 * of.m_2 * of.l_1 * of.d_21 * sin(theta) * rate * rate
-        rate = (inertia * rate + h * (pull + gravity + whirl)) / (
-            inertia + h * arm * arm * (h * stiffness + 2.0 * of.c)
-        )
-        stretch = nut - arm * rate
-        e, theta, u = e + h * stretch, theta + h * rate, u + h * nut
+        rows.append((joint.theta, joint.rate, nut, joint.e, joint.stretch))
+        joint.advance(nut)
+        u += h * nut
     names = ("theta", "theta_rate", "nut_rate", "elongation", "elongation_rate")
     return dict(zip(names, np.array(rows).T, strict=True))
 
