@@ -12,7 +12,7 @@ from tendonlab.diagnosis.search.refit import _goal, strained
 from tendonlab.diagnosis.search.screen import _Score as Score
 from tendonlab.diagnosis.search.screen import _score, _starts, _unit
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
-from tendonlab.errors import NumericalError
+from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
@@ -248,9 +248,12 @@ def test_candidates_that_tuning_hides_are_refitted_as_well(
     assert "".join(s.effect for s in found) == expected
 
 
-def test_where_believed_values_cannot_be_simulated_the_first_screen_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("error", [NumericalError, ParameterError])
+def test_where_believed_values_cannot_be_simulated_the_first_screen_decides(
+    error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def fails(*_: Any) -> Any:
-        raise NumericalError("no")
+        raise error("no")
 
     monkeypatch.setattr(contest, "at_believed_values", fails)
     nothing: Any = None

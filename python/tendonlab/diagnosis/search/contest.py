@@ -13,7 +13,7 @@ from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
-from tendonlab.errors import NumericalError
+from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
@@ -99,7 +99,7 @@ def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar,
     may hide the true effect behind strained parameters."""
     try:
         there = at_believed_values(fitter, base)
-    except NumericalError:
+    except (NumericalError, ParameterError):  # the misfit there may be beyond all numbers
         return chosen
     best = _promising(shop.screen_all(*there, "believed values"), bar)[:NUM_HIDDEN]
     hidden = [s for s in best if s.effect not in {c.effect for c in chosen}]
