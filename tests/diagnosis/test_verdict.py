@@ -96,20 +96,27 @@ def test_effects_within_a_fifth_of_the_accepted_one_are_not_told_apart() -> None
 
 
 def selected(
-    *, nominal: float = 50.0, tuned: float = 20.0, explained: float | None = 0.9, none: float = 0.01
+    *,
+    nominal: float = 50.0,
+    tuned: float = 20.0,
+    explained: float | None = 0.9,
+    none: float = 0.01,
+    repeated: bool = True,
 ) -> Verdict:
     """The verdict where one effect was selected."""
-    levels = Levels(nominal=nominal, tuned=tuned, refitted=tuned, explained=explained, repeated=True)
+    levels = Levels(nominal=nominal, tuned=tuned, refitted=tuned, explained=explained, repeated=repeated)
     return decide((contest((), "a", a=1.0 - none, none=none),), ("a",), levels)
 
 
 @pytest.mark.parametrize(
-    ("explained", "verdict"), [(0.9, "effect"), (0.74, "unknown_effect"), (None, "unknown_effect")]
-)
-def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess(
-    explained: float | None, verdict: str
+    ("explained", "repeated", "verdict"),
+    [(0.9, True, "effect"), (0.74, True, "unknown_effect"), (None, True, "unknown_effect"), (0.74, False, "effect"),
+     (0.61, False, "effect"), (0.59, False, "unknown_effect")],
+)  # fmt: skip
+def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess_or_three_fifths_over_an_assumed_floor(
+    explained: float | None, repeated: bool, verdict: str
 ) -> None:
-    found = selected(explained=explained)
+    found = selected(explained=explained, repeated=repeated)
     assert found.verdict == verdict
     assert max(found.probability, key=lambda name: found.probability[name]) == verdict
     assert sum(found.probability.values()) == pytest.approx(1.0)

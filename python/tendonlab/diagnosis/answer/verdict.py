@@ -13,7 +13,8 @@ from tendonlab.diagnosis.search.halves import NEAR_FLOOR
 
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 10.0  # mean square, in units of a floor that is only assumed, beyond which it is no noise
-EXPLAINED = 0.6  # share of the held-out excess that library effects must remove to be the whole answer
+EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
+EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
 SOFT, SAME_GROUP = 0.05, 0.2
 
 
@@ -52,21 +53,21 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     room = NEAR_FLOOR - levels.tuned if levels.repeated else min(SOFT, FAR - levels.refitted)
     at_floor = levels.nominal < NO_GAP or (gained < 0 < room and not selected)
     explained = levels.explained or 0.0
+    needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
         "no_gap": _step(SOFT if at_floor else NO_GAP - levels.nominal) * (1.0 if not selected else none),
         "parameters_only": _step(levels.nominal - NO_GAP) * _step(gained) * none * _step(room),
-        "effect": (1.0 - none) * (_step(explained - EXPLAINED) if selected else 0.1),
-        "unknown_effect": (1.0 - none) * (_step(EXPLAINED - explained) if selected else 0.5)
-        + (0.0 if room > 0 else none),
+        "effect": (1.0 - none) * (_step(explained - needed) if selected else 0.1),
+        "unknown_effect": (1.0 - none) * (_step(needed - explained) if selected else 0.5) + (0.0 if room > 0 else none),
     }
     if at_floor:
         verdict = "no_gap"
     elif not selected:
         verdict = "parameters_only" if room > 0 else "unknown_effect"
     else:
-        verdict = "effect" if levels.explained is not None and explained >= EXPLAINED else "unknown_effect"
+        verdict = "effect" if levels.explained is not None and explained >= needed else "unknown_effect"
     weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)
     total = sum(weight.values())
     effects, sets = marginals(rounds)
