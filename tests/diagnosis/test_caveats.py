@@ -60,6 +60,8 @@ def test_changes_that_make_the_held_out_error_larger_are_named() -> None:
     assert effect == "Adding a:b made the held-out error larger: 3 noise floors before, 4 after."
     assert said(errors=(9.0, 3.0, 4.0), added=()) == ()
     assert said(errors=(3.0, 3.05, 3.0)) == ()  # rounding
+    assert said(errors=(0.6, 0.9, 0.95)) == ()  # below the floor nothing counts
+    assert len(said(errors=(0.6, 1.1, 1.0))) == 1
 
 
 def test_a_floor_above_the_motion_is_named() -> None:

@@ -272,3 +272,11 @@ def test_caveats_stand_below_the_verdict(with_effect: Diagnosis, tmp_path: Path)
     head = text[text.index("<h1>") : text.index("</header>")]
     assert "Inertia was &lt;fitted&gt; far away." in head
     assert 'class="caveat"' not in read(with_effect, tmp_path)[0]
+
+
+def test_an_element_is_named_in_words_only_where_it_is_likely(with_effect: Diagnosis, tmp_path: Path) -> None:
+    elements = [{"element": "joint", "probability": 0.19}, {"element": "motor", "probability": 0.02}]
+    unsure = replace(with_effect, where={**with_effect.where, "elements": elements})
+    assert "most likely comes from" not in read(unsure, tmp_path)[0]
+    assert "The remaining error is largest" in read(unsure, tmp_path)[0]
+    assert "most likely comes from" in read(with_effect, tmp_path)[0]

@@ -13,7 +13,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
 
 PULLED = 4.0  # stated standard deviations from the stated value
-WORSE = 1.05  # ratio of held-out mean squares that is no accident of rounding
+WORSE = 1.05  # ratio of held-out mean squares, above the floor, that is no accident of rounding
 
 
 def caveats(
@@ -45,7 +45,7 @@ def _worse(stages: Mapping[str, Replayed], floor: Floor, added: Sequence[str]) -
     return [
         f"{change} made the held-out error larger: {error[before]:.3g} noise floors before, {error[after]:.3g} after."
         for before, after, change in steps
-        if error[after] ** 2 > WORSE * error[before] ** 2
+        if error[after] ** 2 > WORSE * max(1.0, error[before] ** 2)
     ]
 
 

@@ -16,6 +16,8 @@ _P_VALUE = (
     "It is not corrected for the number of regimes compared."
 )
 
+LIKELY = 0.2  # probability from which an element is named in words
+
 
 def location(diagnosis: Diagnosis) -> list[Block]:
     """A sentence, tables of elements, signals and regimes, and the map."""
@@ -34,7 +36,7 @@ def location(diagnosis: Diagnosis) -> list[Block]:
 def _summary(diagnosis: Diagnosis) -> str:
     """The largest entry of each list of `where`; empty where nothing stands out."""
     sentences = []
-    if elements := diagnosis.where["elements"]:
+    if elements := [entry for entry in diagnosis.where["elements"] if entry["probability"] >= LIKELY]:
         first = max(elements, key=lambda entry: entry["probability"])
         source = words.element_words(first["element"], diagnosis.system, article=True)
         sure = numbers.probability(first["probability"])
