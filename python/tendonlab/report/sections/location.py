@@ -11,12 +11,11 @@ from tendonlab.report.diagnosis import Diagnosis
 
 CLEAR = 0.05  # p-value up to which the summary says that the error is concentrated in a regime
 LEAST = 0.005  # probability below which an element is not worth a row of its own
+LIKELY = 0.2  # probability from which an element is named in words
 _P_VALUE = (
     "p-value: how often the same error, shifted in time against the motion, would be as concentrated by chance. "
     "It is not corrected for the number of regimes compared."
 )
-
-LIKELY = 0.2  # probability from which an element is named in words
 
 
 def location(diagnosis: Diagnosis) -> list[Block]:
