@@ -19,9 +19,9 @@ FLOOR = Floor(np.array([1.0]), [[]], [1.0], 0.008, repeated=True)
 def said(*, x: float = 0.0, errors: tuple[float, float, float] = (9.0, 3.0, 2.0), added: tuple[str, ...] = ("a:b",),
          swing: float = 50.0, stated: NominalParameter | None = None) -> tuple[str, ...]:  # fmt: skip
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
-    free: Any = SimpleNamespace(name="inertia", mean=0.0, sd=0.1, value=lambda x: 0.02 * float(np.exp(x)))
+    free: Any = SimpleNamespace(name="inertia", value=lambda x: 0.02 * float(np.exp(x)))
     final: Any = SimpleNamespace(
-        free=[free], x=[0.1 * x], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2")
+        free=[free], x=[np.log1p(0.1 * x)], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2")
     )
     time = np.linspace(0.0, 20.0 * np.pi, 4001)
     parameters = {"inertia": stated or NominalParameter(0.02, 0.002)}
@@ -45,7 +45,7 @@ def test_nothing_is_said_where_all_is_well() -> None:
 
 def test_a_parameter_far_from_its_stated_value_is_named() -> None:
     (text,) = said(x=-4.4)
-    assert text == "inertia was fitted at 0.0129 kg*m^2: 4 standard deviations from the stated 0.02 ± 0.002."
+    assert text == "inertia was fitted at 0.0112 kg·m²: 4 standard deviations from the stated 0.02 ± 0.002."
 
 
 @pytest.mark.parametrize("sd", [None, 0.0, np.inf])

@@ -11,6 +11,7 @@ from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
+from tendonlab.report.numbers import unit_text
 
 PULLED = 4.0  # stated standard deviations from the stated value
 WORSE = 1.05  # ratio of held-out mean squares, above the floor, that is no accident of rounding
@@ -29,11 +30,13 @@ def _pulled(case: Case, final: Fitted) -> list[str]:
         stated = case.dataset.parameters.get(free.name)
         if stated is None or not stated.sd or not np.isfinite(stated.sd):
             continue
-        away = abs(float(x) - free.mean) / free.sd
+        value = free.value(float(x))
+        away = abs(value - stated.value) / stated.sd
         if away > PULLED:
+            fitted = f"{value:.3g} {unit_text(final.system.unit(free.name))}".rstrip()
             said.append(
-                f"{free.name} was fitted at {free.value(float(x)):.3g} {final.system.unit(free.name)}: {away:.0f} "
-                f"standard deviations from the stated {stated.value:.3g} ± {stated.sd:.2g}."
+                f"{free.name} was fitted at {fitted}: {away:.0f} standard deviations from the stated "
+                f"{stated.value:.3g} ± {stated.sd:.2g}."
             )
     return said
 
