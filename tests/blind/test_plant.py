@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+import driving
 import numpy as np
 import pytest
+from driving import rigs
 
 from tendonlab.blind.description import Controller, Lanes, Scene
 from tendonlab.blind.plant import Run, simulate
@@ -19,19 +23,10 @@ RIG = {
 
 
 def lanes(num_lanes: int = 1, *, form: int = 0, **parameters: float | np.ndarray) -> Lanes:
-    values = {**RIG, **parameters}
-    return Lanes(
-        system=TWO_INERTIA,
-        parameters={name: np.broadcast_to(np.asarray(value, float), (num_lanes,)) for name, value in values.items()},
-        scale=np.ones((2, num_lanes)),
-        form=np.full(num_lanes, form),
-    )
+    return rigs(TWO_INERTIA, {**RIG, **parameters}, num_lanes=num_lanes, form=form)
 
 
-def push(rig: Lanes, torque: float | np.ndarray, *, seconds: float, step: float = 1e-4, **scene: np.ndarray) -> Run:
-    """Open loop: a constant motor torque, N*m."""
-    command = np.broadcast_to(np.asarray(torque, float), (round(seconds / 0.002), rig.size))
-    return simulate(rig, Scene(reference=command, **scene), step=step)
+push = partial(driving.push, step=1e-4)
 
 
 def follow(rig: Lanes, *, step: float, seconds: float = 0.6) -> Run:

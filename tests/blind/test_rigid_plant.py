@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+import driving
 import numpy as np
 import pytest
+from driving import rigs
 from scipy.special import ellipk
 
 from tendonlab.blind.description import Controller, Lanes, Scene
-from tendonlab.blind.plant import Run, simulate
+from tendonlab.blind.plant import simulate
 from tendonlab.blind.systems import RIGID_JOINT
 
 INERTIA, GRAVITY = 0.05, 1.8
 
 
 def lanes(num_lanes: int = 1, *, form: int = 0, **parameters: float | np.ndarray) -> Lanes:
-    values = {"joint_inertia": INERTIA, **parameters}
-    return Lanes(
-        system=RIGID_JOINT,
-        parameters={name: np.broadcast_to(np.asarray(value, float), (num_lanes,)) for name, value in values.items()},
-        scale=np.ones((1, num_lanes)),
-        form=np.full(num_lanes, form),
-    )
+    return rigs(RIGID_JOINT, {"joint_inertia": INERTIA, **parameters}, num_lanes=num_lanes, form=form)
 
 
-def push(rig: Lanes, torque: float | np.ndarray, *, seconds: float, step: float = 2e-4, **scene: np.ndarray) -> Run:
-    """Open loop: a constant command, N*m."""
-    command = np.broadcast_to(np.asarray(torque, float), (round(seconds / 0.002), rig.size))
-    return simulate(rig, Scene(reference=command, **scene), step=step)
+push = partial(driving.push, step=2e-4)
 
 
 def at(position: float, velocity: float = 0.0) -> np.ndarray:

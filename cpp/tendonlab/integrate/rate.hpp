@@ -155,6 +155,7 @@ template <class System, class T, class Inputs>
                                           const Frame<System, T>& frame, const Inputs& in) {
   return inlined_rate(system, y, frame, in);
 }
+/// The rate within a step, inlined or called as `inlines_laws` says.
 template <class System, class T, class Inputs>
 TENDONLAB_INLINE auto rate_for_step(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
                                     const Inputs& in) {
