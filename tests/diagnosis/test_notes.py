@@ -63,3 +63,14 @@ def test_effects_that_no_fit_succeeded_with_or_that_were_not_tried_are_warnings(
     assert warning.startswith("Asked for and not tried: joint:presliding (")
     assert notes.not_asked(twin_case, search, None) == []
     assert notes.not_asked(twin_case, search, [next(iter(twin_case.system.effects))]) == []
+
+
+def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
+    """A motor command that was logged as a current is no torque."""
+    signals = dict(twin_case.dataset.signals)
+    signals["motor_torque"] = replace(signals["motor_torque"], si_unit="A")
+    current = replace(twin_case, dataset=replace(twin_case.dataset, signals=signals))
+    assert notes.units(twin_case)["motor_torque"] == "N*m"
+    assert notes.units(current)["motor_torque"] == "A"
+    assert notes.units(current)["reference_angle"] == notes.units(current)["motor_angle"] == "rad"
+    assert notes.units(current)["known_torque"] == "N*m"  # was not logged

@@ -129,6 +129,9 @@ def units(case: Case) -> dict[str, str]:
     known = {s.name: unit(s.dimension, axis) for s in info.signals}
     if controller is not None:
         known[controller.reference] = known[controller.measured]
+    for given in info.inputs:  # a command may be logged as a current
+        logged = case.dataset.signals.get(given.name)
+        known |= {given.name: logged.si_unit} if logged else {}
     for port in info.ports:
         own = info.element(port.element).axis or axis
         known |= {f"{port.name}_{q}": unit(where.dimension(port, q), own) for q in where.COORDINATES}
