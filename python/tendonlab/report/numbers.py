@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 ABSENT = "–"
+MOST_DIGITS = 6  # of a bound of a narrow span
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 _TAKES_PREFIX = ("rad", "m", "N", "s", "A", "V")
@@ -26,8 +27,12 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def span(bounds: Sequence[float] | None, digits: int = 3) -> str:
-    """Two bounds as "0.04 to 0.06"; empty where they are absent."""
-    return "" if bounds is None else f"{number(bounds[0], digits)} to {number(bounds[1], digits)}"
+    """Two bounds as "0.04 to 0.06"; empty where they are absent. Different bounds differ in print, by more digits."""
+    if bounds is None:
+        return ""
+    low, high = (number(bound, digits) for bound in bounds)
+    alike = low == high and bounds[0] != bounds[1] and digits < MOST_DIGITS
+    return span(bounds, digits + 1) if alike else f"{low} to {high}"
 
 
 def probability(value: float | None) -> str:
