@@ -190,7 +190,7 @@ def test_what_an_experiment_decides(names: list[str], told: str) -> None:
 
 
 def test_a_narrow_span_takes_the_digits_that_tell_its_ends_apart() -> None:
-    assert numbers.span((-0.38712, -0.38665)) == "−0.3871 to −0.3867"
+    assert numbers.span((-0.38712, -0.38668)) == "−0.3871 to −0.3867"
     assert numbers.span((0.5, 0.5)) == "0.5 to 0.5"
     assert numbers.span((1.0, 1.0 + 1e-9)) == "1 to 1"  # beyond six digits nothing is claimed
     assert numbers.span((float("nan"), 1.0)) == "– to 1"
