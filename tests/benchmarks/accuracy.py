@@ -10,7 +10,8 @@ import numpy as np
 from benchmarks.clock import Call, cpu_seconds
 
 TARGETS = (1e-3, 1e-6)
-ENOUGH = 0.1 * min(TARGETS)  # a scan ends after two settings in a row below this error
+ENOUGH = 0.1 * min(TARGETS)  # a scan ends after two settings in a row below this error,
+SLOWEST = 3.0  # or after a call that takes so long, s
 
 
 def error(found: np.ndarray, reference: np.ndarray) -> float:
@@ -37,8 +38,8 @@ class Setting:
 def scan(
     call_at: Callable[[float], Call], judge: Callable[[np.ndarray], float], tolerances: Sequence[float]
 ) -> list[Setting]:
-    """Every tolerance from the loosest on, until the error is far below the tightest target. A setting that fails has
-    no error."""
+    """Every tolerance from the loosest on, until the error is far below the tightest target or a call is too slow. A
+    setting that fails has no error."""
     done: list[Setting] = []
     for tolerance in tolerances:
         call = call_at(tolerance)
@@ -47,7 +48,8 @@ def scan(
         except (ArithmeticError, RuntimeError, ValueError):
             found = float("nan")
         done.append(Setting(float(tolerance), found, cpu_seconds(call) if np.isfinite(found) else float("nan")))
-        if len(done) > 1 and all(s.error <= ENOUGH for s in done[-2:]):
+        far_below = len(done) > 1 and all(s.error <= ENOUGH for s in done[-2:])
+        if far_below or done[-1].seconds > SLOWEST:
             break
     return done
 

@@ -12,7 +12,7 @@ from importlib import import_module
 from benchmarks import page
 from benchmarks.options import Options
 
-JOBS = ("single", "sweeps", "gradients", "fits", "joint", "growth", "memory")
+JOBS = ("single", "sweeps", "gradients", "fits", "joint", "growth", "memory", "instructions")
 
 
 def main() -> None:

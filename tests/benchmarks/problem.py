@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from tendonlab import _core
+from tendonlab.simulation.prepare import Prepared, choose_loop, prepare
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.system import System
 
@@ -38,6 +40,18 @@ class Problem:
     read: Callable[[dict[str, Any]], np.ndarray] = field(repr=False)
     reads_ports: bool = False
     core: _core.Experiment | None = None
+
+    def core_experiment(self) -> _core.Experiment:
+        """The experiment as the core simulates it."""
+        return self.core or self._prepared.core
+
+    def settings(self, tolerance: float) -> _core.Settings:
+        """How the core goes through it."""
+        return self._prepared.settings(tolerance, ports=self.reads_ports)
+
+    @cached_property
+    def _prepared(self) -> Prepared:
+        return prepare(self.experiment, self.system, choose_loop(self.experiment, self.system.controller, "auto"))
 
     def rate_of_lists(self, t: float, state: np.ndarray) -> list[float]:
         """The rate by the interpreter alone: slow, but it needs no compiler."""

@@ -1,9 +1,8 @@
-"""Memory of large sweeps: the peak of a process of its own, beyond what it held before."""
+"""Memory of large sweeps: the peak of a process of its own."""
 
 from __future__ import annotations
 
 import multiprocessing
-import resource
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -18,13 +17,13 @@ from benchmarks.table import Table, seconds_text
 
 RIG = Path(__file__).resolve().parents[3] / "data" / "two_inertia"
 TOLERANCE = 1e-4
-COLUMNS = ("sweep", "peak", "result", "peak beyond the result, per point", "CPU time per point")
+COLUMNS = ("sweep", "peak of the process", "of which before the sweep", "result", "CPU time per point")
 NOTES = (
-    "Peak: the largest resident memory of a process that makes the sweep, less what it held before, table of points "
-    "included.",
+    "Peak: the largest resident memory of a process that makes the sweep. Before it, the process holds Python, its "
+    "packages and the table of points.",
 )
 
-Measured = tuple[float, float, float]  # bytes of the peak and of the result, CPU seconds
+Measured = tuple[float, float, float, float]  # bytes of the peak, before it and of the result, CPU seconds
 
 
 def run(options: Options) -> list[Table]:
@@ -36,9 +35,9 @@ def run(options: Options) -> list[Table]:
     return [Table("Memory", COLUMNS, tuple(found), NOTES)]
 
 
-def _row(text: str, num: int, peak: float, result: float, seconds: float) -> tuple[str, ...]:
-    beyond = max(0.0, peak - result) / num
-    return (text, f"{peak / 1e6:.0f} MB", f"{result / 1e6:.0f} MB", f"{beyond:.0f} bytes", seconds_text(seconds / num))
+def _row(text: str, num: int, *measured: float) -> tuple[str, ...]:
+    *sizes, seconds = measured
+    return (text, *(f"{size / 1e6:.0f} MB" for size in sizes), seconds_text(seconds / num))
 
 
 def _alone(measure: object, num: int) -> Measured:
@@ -67,11 +66,14 @@ def _measured(system: tl.System, table: pd.DataFrame, experiment: object, **opti
     tl.sweep(system, table[:2], **given)  # type: ignore[arg-type]  # loads what a sweep needs
     before, began = _peak(), time.process_time()
     found = tl.sweep(system, table, **given)  # type: ignore[arg-type]
-    return _peak() - before, float(found.nbytes), time.process_time() - began
+    spent = time.process_time() - began
+    return _peak(), before, float(found.nbytes), spent
 
 
 def _peak() -> float:
-    return 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    """The largest resident memory of this process so far, bytes; getrusage would count its parent's."""
+    lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
+    return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
 
 
 def _spaced(num: int) -> str:

@@ -8,12 +8,12 @@ from benchmarks import mass, mechanism, ours
 from benchmarks.accuracy import error
 from benchmarks.comparison import COLUMNS, Contender, Measured, compare, rows
 from benchmarks.options import Options
-from benchmarks.peers import scipys, soda, sundials
+from benchmarks.peers import natives, scipys, soda, sundials
 from benchmarks.plot import draw
 from benchmarks.problem import Problem
 from benchmarks.table import Table
 
-TOOLS = (ours.TOOL, soda.SCALED, soda.PLAIN, *scipys.TOOLS, sundials.TOOL)
+TOOLS = (ours.TOOL, soda.SCALED, soda.PLAIN, *natives.TOOLS, *scipys.TOOLS, sundials.TOOL)
 PROBLEMS = (
     mass.driven(force=False),
     mass.driven(force=True),

@@ -71,3 +71,31 @@ def observe(problem: Problem, states: np.ndarray, units: np.ndarray) -> np.ndarr
     found = np.empty((len(problem.time), problem.num_outputs))
     observer(problem.outputs)(problem.time, states, units, problem.parameters, found)
     return found
+
+
+@cache
+def right_hand_side(rate: Any, num_parameters: int, units: tuple[float, ...]) -> Any:
+    """The rate of states counted in `units`, for Fortran and C: (t, state, rate, parameters)."""
+    import numba
+    from numba import types
+
+    rate, size, scale = compiled(rate), len(units), np.array(units)
+    numbers = types.CPointer(types.double)
+
+    @numba.cfunc(types.void(types.double, numbers, numbers, numbers))
+    def scaled(t, state, change, given):  # type: ignore[no-untyped-def]
+        y, d = numba.carray(state, (size,)), numba.carray(change, (size,))
+        own = np.empty(size)
+        for j in range(size):
+            own[j] = y[j] * scale[j]
+        rate(t, own, numba.carray(given, (num_parameters,)), d)
+        for j in range(size):
+            d[j] /= scale[j]
+
+    return scaled
+
+
+def address_of(problem: Problem, units: np.ndarray) -> int:
+    """Where the compiled rate lies."""
+    side = right_hand_side(problem.rate, len(problem.parameters), tuple(units.tolist()))
+    return int(side.address)

@@ -11,38 +11,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.clock import Call
-from benchmarks.peers.compiled import compiled, observe, observer
+from benchmarks.peers.compiled import address_of, observe, observer
 from benchmarks.problem import Problem
 from benchmarks.tool import Tool
 
 NEEDS = ("numba", "numbalsoda")
-
-
-@cache
-def right_hand_side(rate: Any, num_parameters: int, units: tuple[float, ...]) -> Any:
-    """The rate of states counted in `units`, for Fortran."""
-    import numba
-    from numbalsoda import lsoda_sig
-
-    rate, size, scale = compiled(rate), len(units), np.array(units)
-
-    @numba.cfunc(lsoda_sig)
-    def scaled(t, state, change, given):  # type: ignore[no-untyped-def]
-        y, d = numba.carray(state, (size,)), numba.carray(change, (size,))
-        own = np.empty(size)
-        for j in range(size):
-            own[j] = y[j] * scale[j]
-        rate(t, own, numba.carray(given, (num_parameters,)), d)
-        for j in range(size):
-            d[j] /= scale[j]
-
-    return scaled
-
-
-def address_of(problem: Problem, units: np.ndarray) -> int:
-    """Where the compiled rate lies."""
-    side = right_hand_side(problem.rate, len(problem.parameters), tuple(units.tolist()))
-    return int(side.address)
 
 
 def scaled_call(problem: Problem, tolerance: float) -> Call:
