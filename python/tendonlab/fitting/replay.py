@@ -11,6 +11,7 @@ from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.system import System
 
 UNEXPLAINED, SHOWN = 0.1, 10.0  # share of the effort that no model explains, and by how many times the noise it shows
+DAMPING = 1.0  # ratio of the loop: critical
 RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection
 
 
@@ -20,7 +21,8 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
 
     The injection is so stiff that an effort of 10 % of the command's, which no model explains, moves the simulated
     sensor by ten times its noise: stiffer, and the effects drown in that noise; softer, and what no model explains
-    adds up. At least half of the bandwidth that holds 95 % of the motion's power, at most what the samples resolve."""
+    adds up. At least half of the bandwidth that holds 95 % of the motion's power, at most what the samples resolve. The
+    damper must outweigh friction that falls with speed: else the simulator sticks and slips where the rig slides."""
     controller = dataset.controller
     if controller is not None:
         return Replay("controller", controller.kp, controller.kd, controller.measured)
@@ -41,7 +43,7 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
     command_rms = float(np.sqrt(np.nanmean(np.square(commanded))))
     noise = noise_of(dataset.signals[first], [values for _, values in moved])
     omega = max(slowest, min(fastest, float(np.sqrt(UNEXPLAINED / SHOWN * command_rms / (inertia * noise)))))
-    return Replay("injection", float(inertia * omega**2), float(1.4 * inertia * omega), first)
+    return Replay("injection", float(inertia * omega**2), float(2.0 * DAMPING * inertia * omega), first)
 
 
 def _frequency_below(time: np.ndarray, values: np.ndarray, share: float = 0.95) -> float:

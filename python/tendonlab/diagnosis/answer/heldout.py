@@ -76,8 +76,14 @@ def explained(before: Replayed, after: Replayed, floor: Floor) -> float | None:
 
 def gap(mean_square: np.ndarray, floor: np.ndarray) -> float:
     """sqrt(max(0, MSE - floor²)), pooled over outputs after dividing each by its floor."""
+    return float(_gaps(mean_square, floor))
+
+
+def _gaps(mean_square: np.ndarray, floor: np.ndarray) -> np.ndarray:
+    """The gap of each row of mean squares (..., outputs)."""
     measured = np.isfinite(floor)
-    return float(np.sqrt(max(0.0, float(np.mean(mean_square[measured] / floor[measured] ** 2)) - 1.0)))
+    excess = np.mean(mean_square[..., measured] / floor[measured] ** 2, axis=-1) - 1.0
+    return np.asarray(np.sqrt(np.maximum(0.0, excess)))
 
 
 def shrinkage(
@@ -86,18 +92,20 @@ def shrinkage(
     """1 - gap after / gap before, with a 95 % interval from a bootstrap over blocks; None for a gap of 0."""
     a = np.concatenate(mean_squares(case, before, experiments))
     b = np.concatenate(mean_squares(case, after, experiments))
-    value = _shrinkage(a, b, floor.rms)
-    if value is None:
+    all_blocks = np.arange(len(a))[None]
+    value = _shrinkages(a, b, floor.rms, all_blocks)
+    if not len(value):
         return {"value": None, "ci95": None}
-    draws = [_shrinkage(a[k], b[k], floor.rms) for k in rng.integers(0, len(a), (NUM_BOOTSTRAP, len(a)))]
-    kept = [d for d in draws if d is not None]
-    low, high = np.percentile(kept, [2.5, 97.5]) if kept else (value, value)
-    return {"value": value, "ci95": [float(min(low, value)), float(max(high, value))]}
+    draws = _shrinkages(a, b, floor.rms, rng.integers(0, len(a), (NUM_BOOTSTRAP, len(a))))
+    low, high = np.percentile(draws if len(draws) else value, [2.5, 97.5])
+    return {"value": float(value[0]), "ci95": [float(min(low, value[0])), float(max(high, value[0]))]}
 
 
-def _shrinkage(before: np.ndarray, after: np.ndarray, floor: np.ndarray) -> float | None:
-    first = gap(before.mean(axis=0), floor)
-    return None if first == 0.0 else 1.0 - gap(after.mean(axis=0), floor) / first
+def _shrinkages(before: np.ndarray, after: np.ndarray, floor: np.ndarray, draws: np.ndarray) -> np.ndarray:
+    """Shrinkage over each row of blocks in `draws`, of those with a gap before."""
+    first, last = (_gaps(of[draws].mean(axis=1), floor) for of in (before, after))
+    there = first > 0.0
+    return np.asarray(1.0 - last[there] / first[there])
 
 
 def predictive_gain(
