@@ -22,7 +22,7 @@ def main() -> None:
     for job in given.jobs or JOBS:
         tables = import_module(f"benchmarks.jobs.{job}").run(options)
         text = "\n".join(table.markdown() for table in tables)
-        print(text, flush=True)
+        print(f"## {job}\n\n{text}", flush=True)
         if given.write:
             page.write(job, text, rounds=options.rounds)
 

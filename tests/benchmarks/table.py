@@ -9,20 +9,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Table:
-    """`rows`: one cell of text per column. `notes`: sentences below it."""
+    """`rows`: one cell of text per column. `notes`: sentences below it. `title`: where a job has several tables."""
 
-    title: str
     columns: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     notes: tuple[str, ...] = ()
+    title: str = ""
 
     def __post_init__(self) -> None:
         for row in self.rows:
             if len(row) != len(self.columns):
-                raise ValueError(f"{self.title}: {len(row)} cells {row}; expected {len(self.columns)}")
+                raise ValueError(f"{len(row)} cells {row}: expected one for each of {self.columns}")
 
     def markdown(self) -> str:
-        lines = [f"### {self.title}", "", _line(self.columns), _line(["---"] * len(self.columns))]
+        lines = [f"### {self.title}", ""] if self.title else []
+        lines += [_line(self.columns), _line(["---"] * len(self.columns))]
         lines += [_line(row) for row in self.rows]
         lines += [line for note in self.notes for line in ("", note)]
         return "\n".join(lines) + "\n"
@@ -30,6 +31,11 @@ class Table:
 
 def _line(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def count_text(count: int) -> str:
+    """Thousands set apart: "10 000"."""
+    return f"{count:,}".replace(",", " ")
 
 
 def seconds_text(seconds: float) -> str:

@@ -79,7 +79,7 @@ def test_a_missing_tool_is_skipped_and_its_row_says_so() -> None:
 
 
 def test_tables_are_written_between_their_marks() -> None:
-    text = Table("Title", ("a", "b"), (("1", "x|y"),), ("A note.",)).markdown()
+    text = Table(("a", "b"), (("1", "x|y"),), ("A note.",), "Title").markdown()
     assert text == "### Title\n\n| a | b |\n| --- | --- |\n| 1 | x\\|y |\n\nA note.\n"
     before = "# Page\n<!-- one -->\nold\n<!-- end of one -->\nrest\n"
     after = page.placed(before, "one", text)
@@ -88,7 +88,7 @@ def test_tables_are_written_between_their_marks() -> None:
     with pytest.raises(ValueError, match="no marks of 'two'"):
         page.placed(before, "two", text)
     with pytest.raises(ValueError, match="1 cells"):
-        Table("Title", ("a", "b"), (("1",),))
+        Table(("a", "b"), (("1",),))
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def run(options: Options) -> list[Table]:
         *_rows(mechanism.coupled(tensions=True), mechanism.SIX, options.rounds),
         *_fit_rows(options.rounds),
     ]
-    return [Table("Gradients", COLUMNS, tuple(found), NOTES)]
+    return [Table(COLUMNS, tuple(found), NOTES)]
 
 
 def _rows(problem: Problem, names: tuple[str, ...], rounds: int) -> list[tuple[str, ...]]:

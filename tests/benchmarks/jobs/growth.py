@@ -12,7 +12,7 @@ from benchmarks import mass, mechanism
 from benchmarks.clock import Call, alternate
 from benchmarks.options import Options
 from benchmarks.sweep import masses
-from benchmarks.table import Table, ratio_text, seconds_text
+from benchmarks.table import Table, count_text, ratio_text, seconds_text
 from tendonlab import _core
 from tendonlab.simulation.signals import smooth
 from tendonlab.simulation.system import System
@@ -77,7 +77,7 @@ def _contacts(rounds: int) -> Table:
     each = [seconds / num for seconds, num in zip(spent, steps, strict=True)]
     found = [(*case[:3], seconds_text(s), ratio_text(s / each[0])) for case, s in zip(cases, each, strict=True)]
     return Table(
-        "Growth with contacts", ("system", "DoF", "bristles", "per step", "ratio"), tuple(found), (CONTACTS_NOTE,)
+        ("system", "DoF", "bristles", "per step", "ratio"), tuple(found), (CONTACTS_NOTE,), "Growth with contacts"
     )
 
 
@@ -96,7 +96,7 @@ def _parameters(rounds: int) -> Table:
     spent = alternate(calls, rounds=min(rounds, MOST_ROUNDS))
     found = [(str(num), seconds_text(s), ratio_text(s / spent[0])) for num, s in zip(numbers, spent, strict=True)]
     note = f"J2 with all friction of its joint, contacts and cables, 10 001 samples, tolerance {TOLERANCE:.0e}."
-    return Table("Growth with parameters of the gradient", ("directions", "time", "ratio"), tuple(found), (note,))
+    return Table(("directions", "time", "ratio"), tuple(found), (note,), "Growth with parameters of the gradient")
 
 
 def _samples(rounds: int) -> Table:
@@ -104,12 +104,9 @@ def _samples(rounds: int) -> Table:
     sine = np.sin(2.0 * np.pi * mass.FREQUENCY * problem.time)
     calls = [simulation(problem.system, sine, problem.time, num) for num in SAMPLES]
     spent = alternate(calls, rounds=min(rounds, MOST_ROUNDS))
-    found = [
-        (f"{num:,}".replace(",", " "), seconds_text(s), seconds_text(s / num))
-        for num, s in zip(SAMPLES, spent, strict=True)
-    ]
+    found = [(count_text(num), seconds_text(s), seconds_text(s / num)) for num, s in zip(SAMPLES, spent, strict=True)]
     note = f"J1a over 1 s, tolerance {TOLERANCE:.0e}."
-    return Table("Growth with samples", ("samples", "time", "per sample"), tuple(found), (note,))
+    return Table(("samples", "time", "per sample"), tuple(found), (note,), "Growth with samples")
 
 
 def _points(rounds: int) -> Table:
@@ -121,9 +118,6 @@ def _points(rounds: int) -> Table:
         return lambda: tl.sweep(whole.problem.system, part.table, **given)
 
     spent = alternate([call(part) for part in parts], rounds=min(rounds, MOST_ROUNDS))
-    found = [
-        (f"{num:,}".replace(",", " "), seconds_text(s), seconds_text(s / num))
-        for num, s in zip(POINTS, spent, strict=True)
-    ]
+    found = [(count_text(num), seconds_text(s), seconds_text(s / num)) for num, s in zip(POINTS, spent, strict=True)]
     note = f'J1 through `tl.sweep` with `reduce="rms"`, 1001 samples, two outputs, tolerance {TOLERANCE:.0e}.'
-    return Table("Growth with points of a sweep", ("points", "time", "per point"), tuple(found), (note,))
+    return Table(("points", "time", "per point"), tuple(found), (note,), "Growth with points of a sweep")

@@ -37,7 +37,7 @@ for _ in range(int(sys.argv[2])):
 
 def run(options: Options) -> list[Table]:
     if shutil.which("valgrind") is None:
-        return [Table("Instructions", COLUMNS, (), ("Skipped: valgrind is not installed.",))]
+        return [Table(COLUMNS, (), ("Skipped: valgrind is not installed.",))]
     found = [
         _single(mass.driven(force=False), 100, options.rounds),
         _single(mass.driven(force=True), 100, options.rounds),
@@ -47,7 +47,7 @@ def run(options: Options) -> list[Table]:
         f"Tolerance {TOLERANCE:.0e}, outputs at 1 kHz included. A core retires about {PER_CYCLE:g} instructions per "
         f"cycle at most{_clock()}. Divisions and chains of dependent operations keep real code below that."
     )
-    return [Table("Instructions", COLUMNS, tuple(found), (note,))]
+    return [Table(COLUMNS, tuple(found), (note,))]
 
 
 def _single(problem: Problem, runs: int, rounds: int) -> tuple[str, ...]:

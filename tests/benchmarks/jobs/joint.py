@@ -36,7 +36,7 @@ def run(options: Options) -> list[Table]:
     spent = alternate([call for call, _ in calls], rounds=options.rounds)
     each = [seconds / steps for seconds, (_, steps) in zip(spent, calls, strict=True)]
     found = [(n, seconds_text(s), ratio_text(s / each[0])) for n, s in zip(names, each, strict=True)]
-    return [Table("One joint", COLUMNS, tuple(found), notes)]
+    return [Table(COLUMNS, tuple(found), notes)]
 
 
 def _steps(integrator: str) -> Call:

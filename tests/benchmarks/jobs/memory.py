@@ -13,7 +13,7 @@ import pandas as pd
 import tendonlab as tl
 from benchmarks.options import Options
 from benchmarks.sweep import masses
-from benchmarks.table import Table, seconds_text
+from benchmarks.table import Table, count_text, seconds_text
 
 RIG = Path(__file__).resolve().parents[3] / "data" / "two_inertia"
 TOLERANCE = 1e-4
@@ -29,10 +29,12 @@ Measured = tuple[float, float, float, float]  # bytes of the peak, before it and
 def run(options: Options) -> list[Table]:
     million, rig = options.million, options.points
     found = [
-        _row(f"J1, {_spaced(million)} points, rms of two outputs", million, *_alone(reduced_masses, million)),
-        _row(f"two_inertia, {_spaced(rig)} points, 2 000 samples of three outputs", rig, *_alone(recorded_rigs, rig)),
+        _row(f"J1, {count_text(million)} points, rms of two outputs", million, *_alone(reduced_masses, million)),
+        _row(
+            f"two_inertia, {count_text(rig)} points, 2 000 samples of three outputs", rig, *_alone(recorded_rigs, rig)
+        ),
     ]
-    return [Table("Memory", COLUMNS, tuple(found), NOTES)]
+    return [Table(COLUMNS, tuple(found), NOTES)]
 
 
 def _row(text: str, num: int, *measured: float) -> tuple[str, ...]:
@@ -74,7 +76,3 @@ def _peak() -> float:
     """The largest resident memory of this process so far, bytes; getrusage would count its parent's."""
     lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
     return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
-
-
-def _spaced(num: int) -> str:
-    return f"{num:,}".replace(",", " ")

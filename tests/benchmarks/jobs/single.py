@@ -36,7 +36,7 @@ def run(options: Options) -> list[Table]:
         measured[problem.name] = _measure(problem, contenders, options)
         found += rows(problem.name, contenders, measured[problem.name])
     draw({name: measured[name].settings for name in ("J1a with force", "J1b", "J2")})
-    return [Table("Single simulations", ("job", "tool", *COLUMNS), tuple(found), NOTES)]
+    return [Table(("job", "tool", *COLUMNS), tuple(found), NOTES)]
 
 
 def _measure(problem: Problem, contenders: list[Contender], options: Options) -> Measured:

@@ -14,7 +14,7 @@ from benchmarks.comparison import COLUMNS, Contender, compare, rows
 from benchmarks.options import Options
 from benchmarks.peers import diffraxes, scipys, soda
 from benchmarks.sweep import Sweep, masses, mechanisms
-from benchmarks.table import Table
+from benchmarks.table import Table, count_text
 from benchmarks.tool import FINE
 
 MOST_ROUNDS = 5  # a round of all points takes seconds
@@ -31,11 +31,17 @@ def run(options: Options) -> list[Table]:
     small = masses(diffraxes.POINTS)
     found = [
         *_rows(
-            f"J1, {options.points} points", masses(options.points), JUDGED_MASSES, rounds, diffraxes.contenders(small)
+            f"J1, {count_text(options.points)} points",
+            masses(options.points),
+            JUDGED_MASSES,
+            rounds,
+            diffraxes.contenders(small),
         ),
-        *_rows(f"J2, {options.mechanisms} points", mechanisms(options.mechanisms), JUDGED_MECHANISMS, rounds),
+        *_rows(
+            f"J2, {count_text(options.mechanisms)} points", mechanisms(options.mechanisms), JUDGED_MECHANISMS, rounds
+        ),
     ]
-    return [Table("Sweeps", ("job", "tool", *COLUMNS), tuple(found), NOTES)]
+    return [Table(("job", "tool", *COLUMNS), tuple(found), NOTES)]
 
 
 def _rows(
