@@ -87,17 +87,8 @@ def run(
     """Simulate `system` under a command (and a known torque), or inputs by name, given at `time`, `kind` "hold",
     "linear" or "smooth" between them."""
     info = system.info
-    first = {info.inputs[0].name: command} | ({} if known is None else {info.inputs[1].name: known})
-    given = command if isinstance(command, Mapping) else first
-    signals = [_signal(time, given[s.name], kind) if s.name in given else _core.Signal() for s in info.inputs]
-    experiment = _core.Experiment(
-        kind=system.kind,
-        time=time.tolist(),
-        inputs=signals,
-        loop=_core.Loop() if loop is None else loop,
-        position=list(position or [0.0] * info.dof),
-        velocity=list(velocity or [0.0] * info.dof),
-    )
+    given = command if isinstance(command, Mapping) else _commanded(system, command, known)
+    experiment = _experiment(system, time, given, kind=kind, loop=loop, position=position, velocity=velocity)
     names = [p.name for p in info.parameters]
     seeds = [("parameter", names.index(n)) if n in names else (n[:8], int(n[8:])) for n in by]
     settings = _core.Settings(
@@ -111,6 +102,63 @@ def run(
         attempts=done["attempts"],
         rejected=done["rejected"],
         events=done["events"],
+    )
+
+
+def run_many(
+    systems: Sequence[System],
+    time: np.ndarray,
+    inputs: Mapping[str, np.ndarray | float],
+    *,
+    kind: str = "smooth",
+    tolerance: float = 1e-9,
+    **how: Any,
+) -> np.ndarray:
+    """All outputs of several systems of one kind, (systems, outputs, samples), as the points of a sweep get them: steps
+    of eight are taken together. `how`: loop, position, velocity, as in `run`."""
+    first = systems[0]
+    dof, num_outputs = first.info.dof, len(first.info.outputs)
+    start = [np.tile(how.get(name) or [0.0] * dof, (len(systems), 1)) for name in ("position", "velocity")]
+    out = np.empty((len(systems), num_outputs, time.size))
+    messages = _core.simulate_many(
+        first.kind,
+        np.array([s.values() for s in systems]),
+        np.array([s.active() for s in systems]),
+        _experiment(first, time, inputs, kind=kind, **how),
+        *start,
+        _core.Settings(tolerance=tolerance),
+        list(range(num_outputs)),
+        out,
+    )
+    assert messages == [""] * len(systems)
+    return out
+
+
+def _commanded(
+    system: System, command: np.ndarray | float, known: np.ndarray | float | None
+) -> dict[str, np.ndarray | float]:
+    inputs = system.info.inputs
+    return {inputs[0].name: command} | ({} if known is None else {inputs[1].name: known})
+
+
+def _experiment(
+    system: System,
+    time: np.ndarray,
+    given: Mapping[str, np.ndarray | float],
+    *,
+    kind: str,
+    loop: Any = None,
+    position: Sequence[float] | None = None,
+    velocity: Sequence[float] | None = None,
+) -> Any:
+    info = system.info
+    return _core.Experiment(
+        kind=system.kind,
+        time=time.tolist(),
+        inputs=[_signal(time, given[s.name], kind) if s.name in given else _core.Signal() for s in info.inputs],
+        loop=_core.Loop() if loop is None else loop,
+        position=list(position or [0.0] * info.dof),
+        velocity=list(velocity or [0.0] * info.dof),
     )
 
 

@@ -15,6 +15,11 @@ def pushed(time: np.ndarray = TIME, *, amplitude: float = 0.4) -> pd.DataFrame:
     return pd.DataFrame({"motor_torque": amplitude * np.sin(6.0 * time)}, index=pd.Index(time, name="t"))
 
 
+def assert_is_simulation(swept: np.ndarray, alone: np.ndarray, *, tolerance: float = 1e-6) -> None:
+    """The points of a sweep take their steps together: they agree with a simulation to ten times the tolerance."""
+    np.testing.assert_allclose(swept, alone, rtol=0.0, atol=10 * tolerance * np.abs(alone).max())
+
+
 def extremes(chunk: np.ndarray) -> np.ndarray:
     """Two numbers per point, of the first output."""
     return np.stack([chunk[:, 0].min(axis=-1), chunk[:, 0].max(axis=-1)], axis=1)

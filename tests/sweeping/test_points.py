@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from sweeps import SIM, TABLE, TIME, pushed
+from sweeps import SIM, TABLE, TIME, assert_is_simulation, pushed
 
 import tendonlab as tl
 from tendonlab.sweeping import latin_hypercube, sobol
@@ -21,7 +21,7 @@ def assert_rows_are_simulations(system: tl.System, table: pd.DataFrame, experime
     for k, row in enumerate(table.to_dict(orient="records")):
         alone = system.with_parameters({str(name): value for name, value in row.items()}).simulate(experiment)
         for name in alone.outputs:
-            np.testing.assert_array_equal(swept[name].isel(point=k), alone[name], err_msg=f"row {k}")
+            assert_is_simulation(swept[name].isel(point=k).to_numpy(), alone[name])
 
 
 def test_each_row_of_a_table_is_the_simulation_with_its_parameters() -> None:

@@ -22,9 +22,8 @@ struct Deadband {
   }
   template <class S>
   S apply(const Passing<S>& at) const {
-    const double u = plain(at.signal), edge = plain(half_width);
-    const double sense = static_cast<double>((u > 0.0) - (u < 0.0));
-    return select(sense * u >= edge, S(at.signal - sense * half_width), constant<S>(0.0));
+    const Plain<S> u = plain(at.signal), sense = select(u < 0.0, Plain<S>(-1.0), Plain<S>(1.0));
+    return select(sense * u >= plain(half_width), S(at.signal - sense * half_width), constant<S>(0.0));
   }
 };
 }  // namespace tendonlab::actuation

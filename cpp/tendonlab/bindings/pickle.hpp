@@ -12,7 +12,7 @@ inline auto pickled_signal() {
                       s.knots = state[0].cast<std::vector<double>>();
                       s.coefficients = state[1].cast<std::vector<std::array<double, 4>>>();
                       s.holds = state[2].cast<bool>();
-                      s.gather();
+                      s.prepare();
                       return s;
                     });
 }

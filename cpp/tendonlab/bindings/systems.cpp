@@ -20,8 +20,7 @@ Signal make_signal(const Array& knots, const Array& coefficients, bool holds) {
   s.coefficients.resize(pieces);
   for (std::size_t i = 0; i < pieces; ++i)
     for (std::size_t k = 0; k < 4; ++k) s.coefficients[i][k] = coefficients.data()[4 * i + k];
-  s.join();
-  s.gather();
+  s.prepare();
   return s;
 }
 

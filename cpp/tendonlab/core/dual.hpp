@@ -132,10 +132,14 @@ TENDONLAB_DUAL expm1(const Dual<T, n>& a) {
   return chain(e, T(e + 1.0), a);
 }
 TENDONLAB_DUAL abs(const Dual<T, n>& a) {
-  return chain(T(abs(a.value)), T(select(plain(a.value) < 0.0, -1.0, 1.0)), a);
+  return chain(T(abs(a.value)), T(select(plain(a.value) < 0.0, Plain<T>(-1.0), Plain<T>(1.0))), a);
 }
 TENDONLAB_DUAL select(bool condition, const Dual<T, n>& a, const Dual<T, n>& b) {
   return condition ? a : b;
+}
+template <int n>
+TENDONLAB_INLINE Dual<Lanes, n> select(const Mask& m, const Dual<Lanes, n>& a, const Dual<Lanes, n>& b) {
+  return with_partials(select(m, a.value, b.value), a.d, [&](std::size_t i) { return select(m, a.d[i], b.d[i]); });
 }
 template <class T, int n>
 Plain<T> plain(const Dual<T, n>& a) {

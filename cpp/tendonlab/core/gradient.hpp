@@ -1,20 +1,12 @@
 #pragma once
 // One simulation with its exact derivatives in a few directions, carried through every operation.
-#include "tendonlab/core/real.hpp"
+#include "tendonlab/core/lanes.hpp"
 
 namespace tendonlab {
-/// As many derivatives as a register holds: wider vectors of the language cost more than a second simulation.
-#if defined(__AVX512F__)
-using Word = double __attribute__((vector_size(64)));
-#elif defined(__AVX__)
-using Word = double __attribute__((vector_size(32)));
-#else
-using Word = double __attribute__((vector_size(16)));
-#endif
-
-/// The value is broadcast over its vector: a product then needs no shuffle.
+/// The value is broadcast over its vector: a product then needs no shuffle. As many derivatives as a register holds:
+/// wider vectors of the language cost more than a second simulation.
 struct Gradient {
-  static constexpr int width = sizeof(Word) / sizeof(double);  ///< number of directions
+  static constexpr int width = word_size;  ///< number of directions
   Word value, d;
   Gradient() : value{}, d{} {}
   Gradient(double a) : value(Word{} + a), d{} {}

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <cstring>
 
-#define TENDONLAB_INLINE inline __attribute__((always_inline))
+#define TENDONLAB_ALWAYS __attribute__((always_inline))
+#define TENDONLAB_INLINE inline TENDONLAB_ALWAYS
 
 namespace tendonlab {
 /// The scalar of control decisions (step size, modes, error), which drop derivatives on purpose.
@@ -31,6 +32,9 @@ inline double plain(double a) {
 inline bool varies(double) {
   return false;
 }
+inline bool any(bool condition) {
+  return condition;
+}
 inline double select(bool condition, double a, double b) {
   return condition ? a : b;
 }
@@ -39,34 +43,38 @@ inline double abs(double a) {
 }
 
 /// exp(x), 1e-15 relative in [-90, 709], flat outside: inline, so that laws cost what the arithmetic costs (Estrin's
-/// scheme).
-TENDONLAB_INLINE double exp(double x) {
+/// scheme). `W`: a double or a vector of them, `Bits` integers of the same size.
+template <class W, class Bits>
+TENDONLAB_INLINE W exp_of(W x) {
   constexpr double magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
-  x = x > -90.0 ? x : -90.0;
-  x = x < 709.0 ? x : 709.0;
-  double n = x * 1.4426950408889634 + magic;
-  std::int64_t exponent;
+  x = x > -90.0 ? x : W{} - 90.0;
+  x = x < 709.0 ? x : W{} + 709.0;
+  W n = x * 1.4426950408889634 + magic;
+  Bits exponent, bits;
   std::memcpy(&exponent, &n, sizeof n);
   n = n - magic;
-  const double r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10, r2 = r * r, r4 = r2 * r2;
-  double p = ((r * (1. / 39916800) + (1. / 3628800)) * r2 + (r * (1. / 362880) + (1. / 40320))) * (r4 * r4) +
-             (((r * (1. / 5040) + (1. / 720)) * r2 + (r * (1. / 120) + (1. / 24))) * r4 +
-              ((r * (1. / 6) + .5) * r2 + (r + 1.)));
-  std::int64_t bits;
+  const W r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10, r2 = r * r, r4 = r2 * r2;
+  W p = ((r * (1. / 39916800) + (1. / 3628800)) * r2 + (r * (1. / 362880) + (1. / 40320))) * (r4 * r4) +
+        (((r * (1. / 5040) + (1. / 720)) * r2 + (r * (1. / 120) + (1. / 24))) * r4 +
+         ((r * (1. / 6) + .5) * r2 + (r + 1.)));
   std::memcpy(&bits, &p, sizeof p);
-  bits += static_cast<std::int64_t>(static_cast<std::uint64_t>(exponent) << 52);
+  bits += exponent << 52;
   std::memcpy(&p, &bits, sizeof p);
   return p;
 }
+TENDONLAB_INLINE double exp(double x) {
+  return exp_of<double, std::uint64_t>(x);
+}
 
 /// sin(2 pi turns): range reduction by rounding, then an odd polynomial.
-TENDONLAB_INLINE double turn_sine(double turns) {
+template <class T>
+TENDONLAB_INLINE T turn_sine(const T& turns) {
   constexpr double magic = 6755399441055744.0;
-  double r = turns - ((turns + magic) - magic);
+  T r = turns - ((turns + magic) - magic);
   r = select(r > 0.25, 0.5 - r, r);
   r = select(r < -0.25, -0.5 - r, r);
-  const double x = r * 6.283185307179586, s = x * x;
-  double p = s * (-7.647163731819816e-13) + 1.605904383682161e-10;
+  const T x = r * 6.283185307179586, s = x * x;
+  T p = s * (-7.647163731819816e-13) + 1.605904383682161e-10;
   p = p * s - 2.505210838544172e-08;
   p = p * s + 2.755731922398589e-06;
   p = p * s - 1.984126984126984e-04;

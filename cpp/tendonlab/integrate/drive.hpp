@@ -1,86 +1,22 @@
 #pragma once
-// The inputs of a running simulation: logged signals, the loop that closes over the system, delays.
-#include <algorithm>
+// The inputs of a running simulation: which pieces of its signals hold, when they change, what the loop holds
+// meanwhile.
 #include <deque>
 
-#include "tendonlab/integrate/experiment.hpp"
-#include "tendonlab/integrate/past.hpp"
-#include "tendonlab/systems/system.hpp"
+#include "tendonlab/integrate/readings.hpp"
 
 namespace tendonlab::integrate {
-using systems::Motion;
-
 template <class T>
-class Drive {
+class Drive : public Readings<T> {
  public:
-  static constexpr int max_inputs = 16;
-
   Drive(const Experiment& experiment, const T& command_delay, const T& sensor_delay, const T& sensor_bias)
-      : from(experiment),
-        late(command_delay),
-        sensor_late(sensor_delay),
-        bias(sensor_bias),
-        shift(plain(command_delay)),
-        remembers(needs_past()) {
+      : Readings<T>(experiment, command_delay, sensor_delay, sensor_bias), shift(plain(command_delay)) {
     pass_known(experiment.time.front());
     pass_command(experiment.time.front());
   }
+  using Readings<T>::bias, Readings<T>::from, Readings<T>::past, Readings<T>::remembers, Readings<T>::samples,
+      Readings<T>::sensor_late;
 
-  /// The command that reaches the actuator, as a function of the motion. `S` may be without the derivatives of `T`: so
-  /// modes are decided.
-  template <class S, std::size_t n>
-  S command_of(const std::array<S, n>& position, const std::array<S, n>& velocity, const S& now) const {
-    const Loop& loop = from.loop;
-    if (loop.kind == Loop::Kind::controller) {
-      if (loop.sample_time > 0) return lift<S>(held);
-      const S u = unlimited(position, velocity, now);
-      const double edge = remembers ? clipped(plain(u)) : side;
-      const S limited = edge == 0.0 ? u : constant<S>(edge * loop.limit);
-      return limited + from.loop.disturbance.value(S(now - lift<S>(late)), disturbance_piece);
-    }
-    const S u = from.inputs[0].value(S(now - lift<S>(late)), piece[0]);
-    if (loop.kind == Loop::Kind::open) return u;
-    // The sensor's model is inverted on the logged signal: its delay needs no past of the simulation.
-    const S then = now + lift<S>(sensor_late);
-    const auto axis = static_cast<std::size_t>(loop.axis);
-    return u + loop.proportional * (loop.reference.value(then, reference_piece) - lift<S>(bias) - position[axis]) +
-           loop.derivative * (loop.reference.slope(then, reference_piece) - velocity[axis]);
-  }
-  template <class S, int n>
-  S command(const Motion<S, n>& at) const {
-    return command_of(at.position, at.velocity, at.time);
-  }
-  template <int k, class S>
-  S input(const S& now) const {
-    return from.inputs[k].value(now, piece[k]);
-  }
-  /// The rate of an input, and its integral from the first sample.
-  template <int k, class S>
-  S slope(const S& now) const {
-    return from.inputs[k].slope(now, piece[k]);
-  }
-  template <int k, class S>
-  S integral(const S& now) const {
-    return from.inputs[k].integral(now, piece[k]);
-  }
-  /// Was input k logged?
-  template <int k>
-  bool given() const {
-    return !from.inputs[k].empty();
-  }
-
-  /// What a continuous controller would command if nothing clipped it: the guard of its saturation.
-  template <class S, std::size_t n>
-  S unlimited(const std::array<S, n>& position, const std::array<S, n>& velocity, const S& now) const {
-    const Loop& loop = from.loop;
-    const auto axis = static_cast<std::size_t>(loop.axis);
-    const S then = now - lift<S>(late);
-    S y = position[axis], rate = velocity[axis];
-    if (remembers) std::tie(y, rate) = past.reading(S(then - lift<S>(sensor_late)), y, rate, now);
-    const S r = loop.reference.value(then, reference_piece);
-    const S dr = loop.reference_weight * loop.reference.slope(then, reference_piece);
-    return loop.proportional * (r - (y + lift<S>(bias))) + loop.derivative * (dr - rate);
-  }
   bool saturates() const {
     return from.loop.kind == Loop::Kind::controller && from.loop.sample_time == 0 && !remembers &&
            from.loop.limit < std::numeric_limits<double>::infinity();
@@ -151,7 +87,6 @@ class Drive {
     ++tick;
     pass_command(now);
   }
-  bool samples() const { return from.loop.kind == Loop::Kind::controller && from.loop.sample_time > 0; }
 
   /// Before the start the loop reads the initial state.
   template <int n>
@@ -174,26 +109,17 @@ class Drive {
   /// Longest step over which a delayed reading is known in advance.
   double longest_step() const { return remembers && lateness() > Past<T>::shortest ? lateness() : Signal::inf_time; }
 
-  const Experiment& from;
-  const T late, sensor_late, bias;
-  const double shift;
-  const bool remembers;  ///< does the loop read the past?
-  double side = 0;       ///< mode of the saturation: -1, 0, +1
-  Past<T> past;
+  const double shift;  ///< delay of the command
 
  private:
+  using Readings<T>::disturbance_piece, Readings<T>::held, Readings<T>::is_late, Readings<T>::piece,
+      Readings<T>::reference_piece;
   struct Command {
     double due;
     T value;
   };
-  /// A delay of 0 that is differentiated needs the past too: its derivative is the slope of the delayed signal.
-  static bool is_late(const T& delay) { return plain(delay) > 0 || varies(delay); }
-  bool needs_past() const {
-    return from.loop.kind == Loop::Kind::controller && (is_late(sensor_late) || (is_late(late) && !samples()));
-  }
   /// Does the logged command drive the system, rather than a controller?
   bool logged() const { return from.loop.kind != Loop::Kind::controller; }
-  double clipped(double u) const { return u > from.loop.limit ? 1.0 : u < -from.loop.limit ? -1.0 : 0.0; }
   static void move(const Signal& s, int& i, double by, double now) {
     while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
   }
@@ -204,12 +130,10 @@ class Drive {
   }
   double tick_time(long k) const { return from.time.front() + static_cast<double>(k) * from.loop.sample_time; }
 
-  mutable std::array<int, max_inputs> piece{};
-  mutable int reference_piece = 0, disturbance_piece = 0;
   std::deque<Command> pending;
   std::deque<double> echoes;  ///< when kinks of the past motion reach the loop
   long tick = 0;
   int ticked_reference = 0, ticked_disturbance = 0;
-  T held{}, last_reading{}, last_reference{};
+  T last_reading{}, last_reference{};
 };
 }  // namespace tendonlab::integrate

@@ -74,4 +74,7 @@ class Past {
   double beginning = 0, present = 0;
   int segment_written = -1, segment_read = -1;
 };
+/// Simulations whose loop reads the past do not run in lanes.
+template <>
+class Past<Lanes> {};
 }  // namespace tendonlab::integrate

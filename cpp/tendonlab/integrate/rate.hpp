@@ -96,7 +96,7 @@ TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& co
 /// Whether a step is one piece of code with its laws: faster for plain numbers in a system of few slots. Elsewhere
 /// calls cost nothing against the work, and one copy of each law stays in the cache.
 template <class System, class T>
-inline constexpr bool inlines_laws = std::is_same_v<T, double> && (slots<System> < 5);
+inline constexpr bool inlines_laws = (std::is_same_v<T, double> || in_lanes<T>)&&(slots<System> < 5);
 
 /// `system.couple`, compiled once for each scalar.
 template <class System, class S, int n, class Modes, class Inputs>

@@ -2,74 +2,38 @@
 // Writes outputs at the instants of the samples, through the sensors: bias by their chain, delay by an earlier instant.
 #include <optional>
 
-#include "tendonlab/integrate/simulation.hpp"
+#include "tendonlab/integrate/instants.hpp"
 
 namespace tendonlab::integrate {
-/// The ports at one instant, computed on first use: most outputs need none.
-template <class System, class T, class Inputs>
-class Instant {
-  using F = Frame<System, T>;
-
- public:
-  Instant(const PortModes<System, T>& with, const StateOf<System, T>& at, const Inputs& inputs)
-      : y(at), contact(with.contact), frame(with.frame), in(inputs) {}
-
-  /// What the ports see.
-  const auto& coupled() {
-    if (!seen) seen = couple(contact.system, y.at, frame.mode, in);
-    return *seen;
-  }
-  /// The force at port i: that of its laws, and where it sticks its share of what holds it.
-  template <int i>
-  T force() {
-    constexpr auto slot = static_cast<std::size_t>(i);
-    T z(0.0);
-    if constexpr (SlotOf<System, i>::states > 0) z = y.memory[memory_before<System, i>()];
-    const T own = respond(std::get<slot>(contact.system.slot), coupled().port[slot], z).force;
-    if constexpr (System::ports[slot].direction >= 0)
-      if (contact.sticks(i, frame)) {
-        if (!borne) borne = contact.borne(y, frame, in);
-        return own + (*borne)[slot];
-      }
-    return own;
-  }
-
-  const StateOf<System, T> y;
-
- private:
-  const Contact<System, T>& contact;
-  const F& frame;
-  const Inputs& in;
-  std::optional<decltype(std::declval<const System&>().couple(y.at, std::declval<F>().mode, in))> seen;
-  std::optional<std::array<T, slots<System>>> borne;
-};
-
-/// The outputs at an instant, before their sensors.
-template <class System, class T, class Inputs>
-auto observe(const System& system, Instant<System, T, Inputs>& instant) {
-  const auto acts = [&](auto i) { return instant.template force<i>(); };
-  const auto port = [&](auto i) -> const Sliding<T>& { return instant.coupled().port[i]; };
-  return system.observe(instant.y.at, acts, port);
-}
-
-template <class System, class T>
+template <template <class> class Of, class T>
 class Recorder {
+  using System = Of<T>;
   static constexpr int n = System::dof, channels = static_cast<int>(System::outputs.size()), ports = slots<System>;
   using Y = StateOf<System, T>;
 
  public:
   /// `column`: the first column of the trajectory's gradient that this run fills, `width` of them.
   Recorder(const System& of, const Experiment& with, Trajectory& into, int first_column, int columns, bool with_ports)
-      : system(of), time(with.time), out(into), column(first_column), width(columns), records_ports(with_ports) {
+      : system(of),
+        experiment(with),
+        time(with.time),
+        out(into),
+        column(first_column),
+        width(columns),
+        records_ports(with_ports) {
     for (std::size_t c = 0; c < channels; ++c)
       delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
+  /// From now on writes several samples of a step together: `of` is the system with its numbers in every lane.
+  void write_together(const Of<Lanes>& of) { together.emplace(of, experiment); }
   /// Writes the samples of one step. What the ports do is recorded without derivatives, from `plain_modes`.
   template <class Values, class Inputs>
   [[gnu::flatten]] void operator()(const Step<Y>& s, const Interval& over, const PortModes<System, T>& port_modes,
                                    const PortModes<Values, double>& plain_modes, const Inputs& in) {
     const double reached = over.start + over.taken + 1e-12 * (1.0 + std::fabs(over.start));
     const double per_length = 1.0 / over.length;
+    if constexpr (std::is_same_v<T, double>)
+      if (together && !late && !plain_modes.frame.holds) write_groups(s, over, reached, plain_modes.frame, in);
     if (late)
       write_late(s, over, reached, port_modes, in);
     else
@@ -91,6 +55,31 @@ class Recorder {
   }
 
  private:
+  static constexpr std::ptrdiff_t fewest = 3;  ///< samples that are written together
+  template <class Frame, class Inputs>
+  void write_groups(const Step<Y>& s, const Interval& over, double reached, const Frame& frame, const Inputs& in) {
+    constexpr auto most = static_cast<std::ptrdiff_t>(Lanes::count);
+    const auto end = std::upper_bound(time.begin() + static_cast<std::ptrdiff_t>(next[0]), time.end(), reached);
+    for (;;) {
+      const auto from = time.begin() + static_cast<std::ptrdiff_t>(next[0]);
+      const auto here = std::min(end - from, most);
+      if (here < fewest) return;
+      const bool full = time.end() - from >= most;  // surplus samples are written again by the steps that they are in
+      const Lanes at =
+          full ? Lanes(&*from) : by_lane([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; });
+      auto y = s.at(Lanes((at - over.start) * (1.0 / over.length)));
+      y.at.time = at;
+      const auto seen = together->outputs(y, frame, in);
+      for (std::size_t c = 0; c < channels; ++c) {
+        double* to = &out.value[c * time.size() + next[0]];
+        if (full)
+          seen[c].store(to);
+        else
+          for (int l = 0; l < here; ++l) to[l] = seen[c][l];
+      }
+      next[0] += static_cast<std::size_t>(here);
+    }
+  }
   template <class Inputs>
   [[gnu::noinline]] void write_late(const Step<Y>& s, const Interval& over, double reached,
                                     const PortModes<System, T>& port_modes, const Inputs& in) {
@@ -116,6 +105,7 @@ class Recorder {
   }
 
   const System& system;
+  const Experiment& experiment;
   const std::vector<double>& time;
   Trajectory& out;
   const int column, width;
@@ -124,5 +114,6 @@ class Recorder {
   std::array<T, channels> delay{};
   std::array<std::size_t, channels> next{};
   std::size_t next_port = 0;
+  std::conditional_t<std::is_same_v<T, double>, std::optional<Instants<Of>>, std::nullopt_t> together{std::nullopt};
 };
 }  // namespace tendonlab::integrate

@@ -1,15 +1,21 @@
 #pragma once
 // A measured or prescribed signal: a piecewise cubic in time (constant pieces where the hardware holds its value).
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "tendonlab/core/dual.hpp"
 
 namespace tendonlab::integrate {
+/// The index of a piece, or one for each lane.
+template <class T>
+using PieceOf = std::conditional_t<in_lanes<T>, std::array<int, Lanes::count>, int>;
+
 struct Signal {
   std::vector<double> knots;                        ///< start of each piece, s, increasing
   std::vector<std::array<double, 4>> coefficients;  ///< value, slope, half curvature, ... in time from the knot
   std::vector<double> before;                       ///< integral up to each knot
+  double pieces_per_second = 0;                     ///< 0: pieces differ in length
   bool holds = false;                               ///< pieces are constant: the stepper lands on their borders
 
   bool empty() const { return knots.empty(); }
@@ -17,47 +23,70 @@ struct Signal {
 
   /// The piece that holds at `time`, looked for from `near`; the first and last pieces reach outwards.
   int locate(double time, int near) const {
-    int i = near;
-    while (i + 1 < pieces() && knots[static_cast<std::size_t>(i + 1)] <= time) ++i;
-    while (i > 0 && knots[static_cast<std::size_t>(i)] > time) --i;
+    int i = pieces_per_second > 0 ? guess(time) : near;
+    while (i + 1 < pieces() && start_of(i + 1) <= time) ++i;
+    while (i > 0 && start_of(i) > time) --i;
     return i;
   }
-  /// Value at time `t`. Smooth signals move `piece`; held ones keep it, as a mode of the step.
-  template <class S>
-  S value(const S& t, int& piece) const {
-    if (empty()) return constant<S>(0.0);
-    if (!holds) piece = locate(plain(t), piece);
-    const auto& c = coefficients[static_cast<std::size_t>(piece)];
-    if (holds) return constant<S>(c[0]);
-    const S x = t - knots[static_cast<std::size_t>(piece)];
-    return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
+  /// Moves `piece` to the one that holds at `time`; a held signal keeps it, as a mode of the step.
+  void follow(double time, int& piece) const {
+    if (!holds) piece = locate(time, piece);
   }
-  template <class S>
-  S slope(const S& t, int& piece) const {
+  void follow(const Lanes& time, PieceOf<Lanes>& piece) const {
+    if (holds) return;
+    double each[Lanes::count];
+    time.store(each);
+    for (std::size_t l = 0; l < piece.size(); ++l) piece[l] = locate(each[l], piece[l]);
+  }
+  double start_of(int piece) const { return knots[static_cast<std::size_t>(piece)]; }
+  Lanes start_of(const PieceOf<Lanes>& piece) const {
+    return in_each(piece, [&](int i) { return start_of(i); });
+  }
+  template <std::size_t power>
+  double coefficient(int piece) const {
+    return coefficients[static_cast<std::size_t>(piece)][power];
+  }
+  template <std::size_t power>
+  Lanes coefficient(const PieceOf<Lanes>& piece) const {
+    return in_each(piece, [&](int i) { return coefficient<power>(i); });
+  }
+  double gathered(int piece) const { return before[static_cast<std::size_t>(piece)]; }
+  Lanes gathered(const PieceOf<Lanes>& piece) const {
+    return in_each(piece, [&](int i) { return gathered(i); });
+  }
+
+  /// Value at time `t`. Smooth signals move `piece`.
+  template <class S, class Piece>
+  S value(const S& t, Piece& piece) const {
+    if (empty()) return constant<S>(0.0);
+    follow(plain(t), piece);
+    if (holds) return lift<S>(coefficient<0>(piece));
+    const S x = t - start_of(piece);
+    return coefficient<0>(piece) +
+           x * (coefficient<1>(piece) + x * (coefficient<2>(piece) + x * coefficient<3>(piece)));
+  }
+  template <class S, class Piece>
+  S slope(const S& t, Piece& piece) const {
     if (empty() || holds) return constant<S>(0.0);
-    piece = locate(plain(t), piece);
-    const auto& c = coefficients[static_cast<std::size_t>(piece)];
-    const S x = t - knots[static_cast<std::size_t>(piece)];
-    return c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
+    follow(plain(t), piece);
+    const S x = t - start_of(piece);
+    return coefficient<1>(piece) + x * (2.0 * coefficient<2>(piece) + x * (3.0 * coefficient<3>(piece)));
   }
   /// Integral from the first knot to `t`; a signal that is not given has none.
-  template <class S>
-  S integral(const S& t, int& piece) const {
+  template <class S, class Piece>
+  S integral(const S& t, Piece& piece) const {
     if (empty()) return constant<S>(0.0);
-    if (!holds) piece = locate(plain(t), piece);
-    const auto i = static_cast<std::size_t>(piece);
-    const auto& c = coefficients[i];
-    const S x = t - knots[i];
-    return before[i] + x * (c[0] + x * (c[1] / 2.0 + x * (c[2] / 3.0 + x * (c[3] / 4.0))));
+    follow(plain(t), piece);
+    const S x = t - start_of(piece);
+    return gathered(piece) +
+           x * (coefficient<0>(piece) + x * (coefficient<1>(piece) / 2.0 +
+                                             x * (coefficient<2>(piece) / 3.0 + x * (coefficient<3>(piece) / 4.0))));
   }
-  /// Prepares `integral`: what has gathered before each piece.
-  void gather() {
-    before.assign(knots.size(), 0.0);
-    for (std::size_t i = 1; i < knots.size(); ++i) {
-      const auto& c = coefficients[i - 1];
-      const double x = knots[i] - knots[i - 1];
-      before[i] = before[i - 1] + x * (c[0] + x * (c[1] / 2.0 + x * (c[2] / 3.0 + x * (c[3] / 4.0))));
-    }
+  /// Joins equal pieces, and prepares `locate` and `integral`.
+  void prepare() {
+    join();
+    find_rate();
+    gather();
   }
   /// When a held value next changes after piece `i`; infinity if it never does.
   double next_change(int i) const {
@@ -75,6 +104,13 @@ struct Signal {
     return i > 0 && constant(coefficients[i]) && constant(coefficients[i - 1]) &&
            coefficients[i][0] == coefficients[i - 1][0];
   }
+  static constexpr double inf_time = 1e300;
+
+ private:
+  int guess(double time) const {
+    const double pieces_before = (time - knots.front()) * pieces_per_second, last = pieces() - 1;
+    return static_cast<int>(std::max(0.0, std::min(pieces_before, last)));
+  }
   /// Joins held pieces of equal value, so that the stepper lands where something happens and nowhere else.
   void join() {
     if (!holds || empty()) return;
@@ -84,6 +120,27 @@ struct Signal {
         ++last, knots[last] = knots[k], coefficients[last] = coefficients[k];
     knots.resize(last + 1), coefficients.resize(last + 1);
   }
-  static constexpr double inf_time = 1e300;
+  /// What has gathered before each piece.
+  void gather() {
+    before.assign(knots.size(), 0.0);
+    for (std::size_t i = 1; i < knots.size(); ++i) {
+      const auto& c = coefficients[i - 1];
+      const double x = knots[i] - knots[i - 1];
+      before[i] = before[i - 1] + x * (c[0] + x * (c[1] / 2.0 + x * (c[2] / 3.0 + x * (c[3] / 4.0))));
+    }
+  }
+  /// How many pieces a second has, if all are of one length.
+  void find_rate() {
+    pieces_per_second = 0;
+    if (pieces() < 3) return;
+    const double length = (knots.back() - knots.front()) / (pieces() - 1);
+    for (std::size_t i = 1; i < knots.size(); ++i)
+      if (std::fabs(knots[i] - knots[i - 1] - length) > 1e-3 * length) return;
+    pieces_per_second = 1.0 / length;
+  }
+  template <class F>
+  static TENDONLAB_INLINE Lanes in_each(const PieceOf<Lanes>& piece, F f) {
+    return by_lane([&](int l) __attribute__((always_inline)) { return f(piece[static_cast<std::size_t>(l)]); });
+  }
 };
 }  // namespace tendonlab::integrate

@@ -35,79 +35,23 @@ class Simulation {
   /// drive)`.
   template <class Record>
   void run(Trajectory& trajectory, Record&& record) {
-    start();
-    while (t < end) {
-      if (++trajectory.attempts > settings.max_attempts)
-        throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,
-                                      " step attempts; expected to reach t = ", end,
-                                      " s: a parameter may be far too stiff, or the tolerance too small"));
-      const double reach = std::min(kink, end) - t;
-      double length = std::min(h, drive.longest_step());
-      // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
-      if (plain_frame.holds) length = std::min(length, drive.next_knot(t + resolved()) - t);
-      const bool lands = length > (retakes ? reach : 0.95 * reach);
-      if (lands) length = reach;
-      const bool explicitly = length < h && length <= explicit_reach;  // h reaches beyond what the inputs allow
-      const auto step = explicitly ? advance_explicitly<Kutta>(system, y, frame, drive, length)
-                                   : advance<Tableau>(system, y, frame, drive, length);
-      const double wish = growth(step);
-      if (!explicitly) explicit_reach *= RETRY;
-      if (!(wish > 0)) {  // rejected
-        ++trajectory.rejected;
-        const double shorter = length * std::max(0.15, -wish);
-        if (explicitly)
-          explicit_reach = shorter;
-        else
-          shrink(shorter);
-        continue;
-      }
-      const Crossing first = earliest_crossing(values(step));
-      if (first.stale || (first.mode >= 0 && first.share < 0.97)) {  // dense output is less accurate inside a step
-        ++trajectory.rejected;
-        retakes = true;
-        const bool now = first.stale ? length < 1e4 * resolved() : first.share * length < resolved();
-        if (now && first.stale && first.mode < System::directions)
-          choose_again(first);
-        else if (now)
-          ++trajectory.events, pass_event(first);  // nearer than time resolves
-        else
-          shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
-        continue;
-      }
-      retakes = false;
-      const double taken = first.mode >= 0 ? first.share * length : length;
-      record(step, Interval{t, length, taken}, PortModes<System, T>{contact, frame},
-             PortModes<Values, double>{plain_contact, plain_frame}, drive);
-      if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
-      y = first.mode >= 0 ? step.at(first.share) : step.to;
-      t = first.mode < 0 && lands ? std::min(kink, end) : t + taken;
-      y.at.time = T(t);
-      h = lands || explicitly ? std::max(h, length * wish) : length * wish;
-      if (first.mode >= 0) {
-        ++trajectory.events;
-        pass_event(first);
-        h = 0.25 * length;
-      }
-      const bool continues = first.mode < 0 && t < kink;
-      if (first.mode < 0 && t >= kink) pass_kink();
-      arrive(continues);
+    begin();
+    while (!done()) {
+      const Attempt next = plan(trajectory);
+      take(next,
+           next.explicitly ? advance_explicitly<Kutta>(system, y, frame, drive, next.length)
+                           : advance<Tableau>(system, y, frame, drive, next.length),
+           trajectory, record);
     }
   }
 
- private:
-  struct Crossing {
-    int mode = -1;
-    double share = 2;
-    double toward = 0;   ///< which way a gap is crossed
-    bool stale = false;  ///< the step began on its guard, in a mode that does not hold
+  // The parts of `run`, for a caller that computes the steps of several simulations together.
+  struct Attempt {
+    double length = 0;
+    bool lands = false;       ///< ends on a jump of the inputs or on the last sample
+    bool explicitly = false;  ///< may be an explicit step: h reaches beyond what the inputs allow
   };
-  static constexpr double on_guard = 1e-13;
-  static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
-
-  /// The shortest time that counts.
-  double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
-
-  void start() {
+  void begin() {
     y.at.time = T(t);
     if constexpr (systems::stated<System> < n) system.begin(y.at, drive);
     const PlainY& at = values(y);
@@ -132,6 +76,85 @@ class Simulation {
     settle(resting);
     refresh();
     arrive(false);
+  }
+  bool done() const { return !(t < end); }
+  /// What to try next.
+  Attempt plan(Trajectory& trajectory) const {
+    if (++trajectory.attempts > settings.max_attempts)
+      throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,
+                                    " step attempts; expected to reach t = ", end,
+                                    " s: a parameter may be far too stiff, or the tolerance too small"));
+    const double reach = std::min(kink, end) - t;
+    Attempt next{std::min(h, drive.longest_step())};
+    // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
+    if (plain_frame.holds) next.length = std::min(next.length, drive.next_knot(t + resolved()) - t);
+    next.lands = next.length > (retakes ? reach : 0.95 * reach);
+    if (next.lands) next.length = reach;
+    next.explicitly = next.length < h && next.length <= explicit_reach;
+    return next;
+  }
+  /// Accepts the step or not, and passes the event or the jump of the inputs that it ends on.
+  template <class Record>
+  void take(const Attempt& tried, const Step<Y>& step, Trajectory& trajectory, Record&& record) {
+    const double length = tried.length, wish = growth(step);
+    if (!tried.explicitly) explicit_reach *= RETRY;
+    if (!(wish > 0)) {  // rejected
+      ++trajectory.rejected;
+      const double shorter = length * std::max(0.15, -wish);
+      if (tried.explicitly)
+        explicit_reach = shorter;
+      else
+        shrink(shorter);
+      return;
+    }
+    const Crossing first = earliest_crossing(values(step));
+    if (first.stale || (first.mode >= 0 && first.share < 0.97))  // dense output is less accurate inside a step
+      return aim(first, length, trajectory);
+    retakes = false;
+    const double taken = first.mode >= 0 ? first.share * length : length;
+    record(step, Interval{t, length, taken}, PortModes<System, T>{contact, frame},
+           PortModes<Values, double>{plain_contact, plain_frame}, drive);
+    if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
+    y = first.mode >= 0 ? step.at(first.share) : step.to;
+    t = first.mode < 0 && tried.lands ? std::min(kink, end) : t + taken;
+    y.at.time = T(t);
+    h = tried.lands || tried.explicitly ? std::max(h, length * wish) : length * wish;
+    if (first.mode >= 0) {
+      ++trajectory.events;
+      pass_event(first);
+      h = 0.25 * length;
+    }
+    const bool continues = first.mode < 0 && t < kink;
+    if (first.mode < 0 && t >= kink) pass_kink();
+    arrive(continues);
+  }
+  const Frame<Values, double>& modes_now() const { return plain_frame; }
+  const Drive<T>& inputs() const { return drive; }
+
+ private:
+  struct Crossing {
+    int mode = -1;
+    double share = 2;
+    double toward = 0;   ///< which way a gap is crossed
+    bool stale = false;  ///< the step began on its guard, in a mode that does not hold
+  };
+  static constexpr double on_guard = 1e-13;
+  static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
+
+  /// The shortest time that counts.
+  double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
+
+  /// The step ends beyond an event: the next attempt is to end on the event.
+  void aim(const Crossing& first, double length, Trajectory& trajectory) {
+    ++trajectory.rejected;
+    retakes = true;
+    const bool now = first.stale ? length < 1e4 * resolved() : first.share * length < resolved();
+    if (now && first.stale && first.mode < System::directions)
+      choose_again(first);
+    else if (now)
+      ++trajectory.events, pass_event(first);  // nearer than time resolves
+    else
+      shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
   }
 
   /// By how much the next step may grow (> 0), or minus the factor by which this one must shrink.

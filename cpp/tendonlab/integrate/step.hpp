@@ -13,25 +13,31 @@ void add(Y& y, double s, const Y& k) {
   for (std::size_t i = 0; i < y.memory.size(); ++i) y.memory[i] = y.memory[i] + s * k.memory[i];
 }
 
+/// The scalar of a share `S` of numbers `F`: lanes of shares of a double are lanes.
+template <class S, class F>
+using Blend = std::conditional_t<in_lanes<S>, S, F>;
+
 /// A step and its dense output: from + s (to - from + (1-s)(first + s second)), s from 0 to 1: what does not move stays
 /// where it is, to the last bit.
 template <class Y>
-struct Step {
+struct Step;
+template <class F, int dof, int nz>
+struct Step<State<F, dof, nz>> {
+  using Y = State<F, dof, nz>;
   Y from, to, first, second, error;
-  template <class S, class F>
-  static F blend(const S& s, const F& a, const F& b, const F& c, const F& d) {
-    return a + s * ((b - a) + (1.0 - s) * (c + s * d));
-  }
   /// The state at the share `s` of the step; its time is left to the caller.
   template <class S>
-  Y at(const S& s) const {
-    Y y;
-    for (std::size_t j = 0; j < y.at.position.size(); ++j) {
-      y.at.position[j] = blend(s, from.at.position[j], to.at.position[j], first.at.position[j], second.at.position[j]);
-      y.at.velocity[j] = blend(s, from.at.velocity[j], to.at.velocity[j], first.at.velocity[j], second.at.velocity[j]);
+  State<Blend<S, F>, dof, nz> at(const S& s) const {
+    const auto blend = [&](const F& a, const F& b, const F& c, const F& d) {
+      return a + s * ((b - a) + (1.0 - s) * (c + s * d));
+    };
+    State<Blend<S, F>, dof, nz> y;
+    for (std::size_t j = 0; j < dof; ++j) {
+      y.at.position[j] = blend(from.at.position[j], to.at.position[j], first.at.position[j], second.at.position[j]);
+      y.at.velocity[j] = blend(from.at.velocity[j], to.at.velocity[j], first.at.velocity[j], second.at.velocity[j]);
     }
-    for (std::size_t i = 0; i < y.memory.size(); ++i)
-      y.memory[i] = blend(s, from.memory[i], to.memory[i], first.memory[i], second.memory[i]);
+    for (std::size_t i = 0; i < nz; ++i)
+      y.memory[i] = blend(from.memory[i], to.memory[i], first.memory[i], second.memory[i]);
     return y;
   }
 };

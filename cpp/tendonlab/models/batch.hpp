@@ -1,18 +1,8 @@
 #pragma once
 // Many simulations of one experiment: the points of a sweep.
-#include <cstdint>
-
 #include "tendonlab/models/model.hpp"
 
 namespace tendonlab {
-/// The points of a sweep, one row each: a value per parameter, a flag per effect, the initial state.
-struct Points {
-  std::size_t count;
-  const double* values;        ///< [point][parameter]
-  const std::uint8_t* active;  ///< [point][effect]
-  const double* position;      ///< [point][degree of freedom]
-  const double* velocity;      ///< [point][degree of freedom]
-};
 /// Where the outputs go, [point][channel][sample], of the channels listed. `Real`: double or float.
 template <class Real>
 struct Outputs {

@@ -7,6 +7,7 @@
 #include "tendonlab/core/parameter.hpp"
 #include "tendonlab/integrate/experiment.hpp"
 #include "tendonlab/integrate/motion.hpp"
+#include "tendonlab/models/points.hpp"
 #include "tendonlab/systems/signals.hpp"
 
 namespace tendonlab {
@@ -57,6 +58,9 @@ struct Configuration {
   std::vector<bool> active;
 };
 
+/// The configuration of a point.
+Configuration configuration(const SystemInfo& of, const Points& points, std::size_t point);
+
 /// The system as if nothing stretched: how far each degree of freedom moves with the first, the inertia that the
 /// command then moves, per unit of command, and the effort on the first degree of freedom per unit of command.
 struct RigidMotion {
@@ -73,6 +77,10 @@ class Model {
   virtual integrate::Trajectory simulate(const Configuration& with, const integrate::Experiment& experiment,
                                          const std::vector<integrate::Seed>& seeds,
                                          const integrate::Settings& settings) const = 0;
+  /// Simulates `experiment` at the points `which`, whose flags are all the same.
+  virtual void simulate_points(const Points& points, const std::vector<std::size_t>& which,
+                               const integrate::Experiment& experiment, const integrate::Settings& settings,
+                               const PointDone& done) const = 0;
   /// The equation of motion along a measured motion with the inputs of `experiment`, at its samples. Throws
   /// ParameterError for a system without one.
   virtual integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,

@@ -2,7 +2,7 @@
 // The one place where a system template becomes a Model: its description and its simulations.
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/integrate/balance.hpp"
-#include "tendonlab/models/run.hpp"
+#include "tendonlab/models/batch_of.hpp"
 
 namespace tendonlab {
 template <template <class> class Of>
@@ -41,6 +41,26 @@ class ModelOf final : public Model {
       systems::run<Of, Gradient>({{description, with, seeds, first, count}, experiment, settings, out});
     }
     return out;
+  }
+  void simulate_points(const Points& points, const std::vector<std::size_t>& which,
+                       const integrate::Experiment& experiment, const integrate::Settings& settings,
+                       const PointDone& done) const override {
+    require_matching(experiment, {});
+    if constexpr (Of<double>::sampled) {
+      for (const std::size_t point : which) {
+        const Configuration with = configuration(info(), points, point);
+        integrate::Trajectory run;
+        std::string message;
+        try {
+          run = simulate(with, experiment, {}, settings);
+        } catch (const NumericalError& error) {
+          message = error.what();
+        }
+        done(point, run, message);
+      }
+    } else {
+      systems::BatchOf<Of>(description, experiment, settings, done).run(points, which);
+    }
   }
   integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
                              const integrate::MeasuredMotion& motion) const override {
@@ -96,6 +116,14 @@ class ModelOrGrown final : public Model {
                                  const integrate::Settings& settings) const override {
     return with.active[switching] ? grown->simulate(with, experiment, seeds, settings)
                                   : usual.simulate(with, experiment, seeds, settings);
+  }
+  void simulate_points(const Points& points, const std::vector<std::size_t>& which,
+                       const integrate::Experiment& experiment, const integrate::Settings& settings,
+                       const PointDone& done) const override {
+    if (which.empty()) return;
+    const bool grows = points.active[which.front() * info().effects.size() + switching] != 0;
+    return (grows ? static_cast<const Model&>(*grown) : usual)
+        .simulate_points(points, which, experiment, settings, done);
   }
   integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
                              const integrate::MeasuredMotion& motion) const override {

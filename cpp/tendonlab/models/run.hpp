@@ -40,50 +40,59 @@ struct Job : Assembly {
 template <class T>
 class FieldValues {
  public:
-  FieldValues(const Assembly& of)
-      : values(of.seeded<T>(of.with.values, integrate::Seed::Of::parameter)),
-        next(of.described.parameter_of_field.begin()) {}
+  FieldValues(const Description& described, const std::vector<T>& given)
+      : values(given), next(described.parameter_of_field.begin()) {}
   template <class Field>
   [[gnu::noinline]] void read(Field& field) {
     field = values[*next++];
   }
 
  private:
-  const std::vector<T> values;
+  const std::vector<T>& values;
   std::vector<std::size_t>::const_iterator next;
 };
 
-/// The system with these numbers in it.
+/// The system with these values of its parameters, and the effects of `with`.
 template <class System, class T>
-System assemble(const Assembly& of) {
+System assemble(const Description& described, const std::vector<T>& given, const Configuration& with) {
   System system{};
-  FieldValues<T> values(of);
+  FieldValues<T> values(described, given);
   for_each_field(system, [&](auto& field) { values.read(field); });
   std::size_t effect = 0;
   for_each_place(system, [&](auto& laws, unsigned& active) {
     constexpr std::size_t count = std::tuple_size_v<std::decay_t<decltype(laws)>>;
-    active = active_bits(of.with, effect, count);
+    active = active_bits(with, effect, count);
     effect += count;
   });
   share_slots(system, std::make_index_sequence<System::ports.size()>{});
   system.prepare();
   return system;
 }
+template <class System, class T>
+System assemble(const Assembly& of) {
+  return assemble<System, T>(of.described, of.seeded<T>(of.with.values, integrate::Seed::Of::parameter), of.with);
+}
+template <class T, class System>
+integrate::Drive<T> drive_of(const System& system, const integrate::Experiment& experiment) {
+  const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
+  return {experiment, system.actuation.delay(), sensor.delay(), sensor.bias()};
+}
 
 template <template <class> class Of, class T>
 void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) {
-  using System = Of<T>;
   const auto& experiment = job.experiment;
-  const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
-  integrate::Simulation<Of, T> simulation(
-      system, plain, experiment, job.settings,
-      integrate::Drive<T>(experiment, system.actuation.delay(), sensor.delay(), sensor.bias()));
+  integrate::Simulation<Of, T> simulation(system, plain, experiment, job.settings, drive_of<T>(system, experiment));
   const auto position = job.seeded<T>(experiment.position, integrate::Seed::Of::position);
   const auto velocity = job.seeded<T>(experiment.velocity, integrate::Seed::Of::velocity);
   std::copy(position.begin(), position.end(), simulation.y.at.position.begin());
   std::copy(velocity.begin(), velocity.end(), simulation.y.at.velocity.begin());
-  simulation.run(job.out, integrate::Recorder<System, T>(system, experiment, job.out, static_cast<int>(job.first),
-                                                         static_cast<int>(job.count), job.shows_ports()));
+  integrate::Recorder<Of, T> recorder(system, experiment, job.out, static_cast<int>(job.first),
+                                      static_cast<int>(job.count), job.shows_ports());
+  if constexpr (std::is_same_v<T, double>) {
+    const std::vector<Lanes> values(job.with.values.begin(), job.with.values.end());
+    recorder.write_together(assemble<Of<Lanes>, Lanes>(job.described, values, job.with));
+  }
+  simulation.run(job.out, recorder);
 }
 
 template <template <class> class Of, class T>

@@ -258,7 +258,8 @@ struct CableJoint : SystemDefaults {
     using D = Dual<T, 1>;
     const auto& cable = std::get<cable_1>(slot);
     const T& stiffness = std::get<transmission::TautCompliance<T>>(cable.laws).stiffness;
-    if (plain(stiffness) <= 0) return T(0.0);
+    const auto stretches = plain(stiffness) > 0.0;
+    if (!any(stretches)) return T(0.0);
     const T arm = anchor_distance * cos(theta), wanted = -(weight(theta) / arm), path = path_slope(theta) / arm;
     T stretch = wanted / (2.0 * stiffness);
     for (int i = 0; i < 20; ++i) {
@@ -268,10 +269,11 @@ struct CableJoint : SystemDefaults {
       pulled.wrap = released.wrap = lift<D>(theta);
       const D one = cable.respond(pulled, D{}).force, two = cable.respond(released, D{}).force;
       const D pull = one - two - path * (one + two);
-      if (plain(pull.d[0]) <= 0) break;  // both cables are slack
-      stretch = stretch + (wanted - pull.value) / pull.d[0];
+      const auto taut = plain(pull.d[0]) > 0.0;  // one of the cables
+      if (!any(taut)) break;
+      stretch = select(taut, T(stretch + (wanted - pull.value) / pull.d[0]), stretch);
     }
-    return stretch;
+    return select(stretches, stretch, T(0.0));
   }
 };
 }  // namespace tendonlab::systems

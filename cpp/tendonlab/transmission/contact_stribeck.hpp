@@ -30,7 +30,7 @@ struct ContactStribeck {
   }
   template <class S>
   S factor(const Sliding<S>& at) const {
-    const T ratio = plain(kinetic_coefficient.value) > 0.0 ? T(static_coefficient / kinetic_coefficient) : T(1.0);
+    const T ratio = select(plain(kinetic_coefficient.value) > 0.0, T(static_coefficient / kinetic_coefficient), T(1.0));
     return 1.0 + (share * (ratio - 1.0)) * stribeck_decay(at.velocity, falloff);
   }
 };

@@ -22,7 +22,7 @@ struct EndCompliance {
   }
   template <class S>
   S force(const Sliding<S>& at) const {
-    return plain(compliance.value) > 0.0 ? S(at.position / compliance) : constant<S>(0.0);
+    return select(plain(compliance.value) > 0.0, S(at.position / compliance), constant<S>(0.0));
   }
 };
 }  // namespace tendonlab::transmission

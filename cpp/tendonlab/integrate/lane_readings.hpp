@@ -1,0 +1,28 @@
+#pragma once
+#include "tendonlab/integrate/readings.hpp"
+
+namespace tendonlab::integrate {
+/// What a system reads from its inputs, in lanes.
+class LaneReadings : public Readings<Lanes> {
+ public:
+  using Readings<Lanes>::Readings;
+  explicit LaneReadings(const Experiment& of) : Readings<Lanes>(of, 0.0, 0.0, 0.0) {}
+  /// Lane l reads as `one(l)` does now.
+  template <class One>
+  void follow(One one) {
+    const auto numbers = [&](auto field) TENDONLAB_ALWAYS { return by_lane([&](int l) { return one(l).*field; }); };
+    const auto pieces = [&](auto field) {
+      PieceOf<Lanes> all;
+      for (std::size_t l = 0; l < all.size(); ++l) all[l] = field(one(static_cast<int>(l)));
+      return all;
+    };
+    using R = Readings<double>;
+    late = numbers(&R::late), sensor_late = numbers(&R::sensor_late), bias = numbers(&R::bias);
+    held = numbers(&R::held), side = numbers(&R::side);
+    for (std::size_t k = 0; k < from.inputs.size(); ++k)
+      if (from.inputs[k].holds) piece[k] = pieces([&](const R& of) { return of.piece[k]; });
+    if (from.loop.reference.holds) reference_piece = pieces([](const R& of) { return of.reference_piece; });
+    if (from.loop.disturbance.holds) disturbance_piece = pieces([](const R& of) { return of.disturbance_piece; });
+  }
+};
+}  // namespace tendonlab::integrate

@@ -1,0 +1,116 @@
+#pragma once
+// Simulations of one experiment at many points, eight at a time: a lane takes the next point as soon as it is free.
+#include "tendonlab/core/error.hpp"
+#include "tendonlab/integrate/lockstep.hpp"
+#include "tendonlab/models/run.hpp"
+
+namespace tendonlab::systems {
+/// Simulates points that have the same effects on.
+template <template <class> class Of>
+class BatchOf {
+  using Simulation = integrate::Simulation<Of, double>;
+  using Recorder = integrate::Recorder<Of, double>;
+  struct Lane {
+    std::size_t point = 0;
+    Configuration with;
+    Of<double> system;
+    integrate::Trajectory out;
+    std::optional<Recorder> recorder;
+    std::optional<Simulation> simulation;  ///< none: the lane is free
+    std::optional<typename Simulation::Attempt> planned;
+  };
+
+ public:
+  BatchOf(const Description& of, const integrate::Experiment& of_all, const integrate::Settings& with,
+          const PointDone& when_done)
+      : described(of), experiment(of_all), settings(with), done(when_done), lockstep(of_all) {}
+
+  void run(const Points& points, const std::vector<std::size_t>& which) {
+    std::size_t next = 0;
+    do {
+      for (std::size_t l = 0; l < lane.size(); ++l)
+        while (!lane[l].simulation && next < which.size()) start(l, points, which[next++]);
+    } while (step() || next < which.size());
+  }
+
+ private:
+  void start(std::size_t l, const Points& points, std::size_t point) {
+    Lane& own = lane[l];
+    own.point = point;
+    own.with = configuration(described.info, points, point);
+    own.out.channels = static_cast<int>(Of<double>::outputs.size());
+    own.out.samples = static_cast<int>(experiment.time.size());
+    own.out.value.resize(Of<double>::outputs.size() * experiment.time.size());
+    own.out.attempts = own.out.rejected = own.out.events = 0;
+    guarded(own, [&] {
+      own.system = assemble<Of<double>, double>(described, own.with.values, own.with);
+      own.simulation.emplace(own.system, own.system, experiment, settings, drive_of<double>(own.system, experiment));
+      const auto* position = points.position + point * static_cast<std::size_t>(described.info.dof);
+      const auto* velocity = points.velocity + point * static_cast<std::size_t>(described.info.dof);
+      std::copy_n(position, described.info.dof, own.simulation->y.at.position.begin());
+      std::copy_n(velocity, described.info.dof, own.simulation->y.at.velocity.begin());
+      own.recorder.emplace(own.system, experiment, own.out, 0, 0, false);
+      own.recorder->write_together(assemble<Of<Lanes>, Lanes>(
+          described, std::vector<Lanes>(own.with.values.begin(), own.with.values.end()), own.with));
+      if (own.simulation->inputs().remembers) {  // its loop reads the past, which lanes do not keep
+        own.simulation->run(own.out, *own.recorder);
+        finish(own, {});
+        return;
+      }
+      own.simulation->begin();
+      take_numbers(l);
+    });
+  }
+  /// The numbers of lane l, for the steps that are computed together.
+  void take_numbers(std::size_t l) {
+    const auto& values = lane[l].with.values;
+    if (numbers.empty()) numbers.assign(values.begin(), values.end());
+    for (std::size_t k = 0; k < values.size(); ++k) numbers[k].set(static_cast<int>(l), values[k]);
+    system = assemble<Of<Lanes>, Lanes>(described, numbers, lane[l].with);
+  }
+  /// One attempt of those that run; false if none does.
+  bool step() {
+    typename integrate::Lockstep<Of>::Simulations running{};
+    std::array<typename Simulation::Attempt, Lanes::count> plan;
+    bool any_runs = false;
+    for (std::size_t l = 0; l < lane.size(); ++l) {
+      Lane& own = lane[l];
+      if (own.simulation && !own.planned) guarded(own, [&] { own.planned = own.simulation->plan(own.out); });
+      if (!own.simulation) continue;
+      running[l] = &*own.simulation, plan[l] = *own.planned, any_runs = true;
+    }
+    if (any_runs)
+      lockstep.attempt(running, system, plan, [&](std::size_t l, const auto& step) {
+        Lane& own = lane[l];
+        own.planned.reset();
+        guarded(own, [&] {
+          own.simulation->take(plan[l], step, own.out, *own.recorder);
+          if (own.simulation->done()) finish(own, {});
+        });
+      });
+    return any_runs;
+  }
+  template <class F>
+  void guarded(Lane& own, F&& f) {
+    try {
+      f();
+    } catch (const NumericalError& error) {
+      finish(own, error.what());
+    }
+  }
+  void finish(Lane& own, const std::string& message) {
+    done(own.point, own.out, message);
+    own.simulation.reset();
+    own.planned.reset();
+  }
+
+  const Description& described;
+  const integrate::Experiment& experiment;
+  const integrate::Settings& settings;
+  const PointDone& done;
+  integrate::Lockstep<Of> lockstep;
+  std::array<Lane, Lanes::count> lane;
+  std::vector<Lanes> numbers;
+  Of<Lanes> system{};
+};
+}  // namespace tendonlab::systems
