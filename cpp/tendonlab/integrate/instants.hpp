@@ -53,7 +53,7 @@ class Instants {
     }
   };
 
-  const System system;
+  const System& system;
   LaneReadings in;
   Frame<System, Lanes> frame{};
 };

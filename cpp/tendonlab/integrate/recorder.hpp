@@ -24,7 +24,8 @@ class Recorder {
     for (std::size_t c = 0; c < channels; ++c)
       delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
   }
-  /// From now on writes several samples of a step together: `of` is the system with its numbers in every lane.
+  /// From now on writes several samples of a step together: `of`, which outlives this, has the same numbers in every
+  /// lane.
   void write_together(const Of<Lanes>& of) { together.emplace(of, experiment); }
   /// Writes the samples of one step. What the ports do is recorded without derivatives, from `plain_modes`.
   template <class Values, class Inputs>

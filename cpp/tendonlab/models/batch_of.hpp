@@ -14,6 +14,7 @@ class BatchOf {
     std::size_t point = 0;
     Configuration with;
     Of<double> system;
+    Of<Lanes> alike;  ///< the same in every lane
     integrate::Trajectory out;
     std::optional<Recorder> recorder;
     std::optional<Simulation> simulation;  ///< none: the lane is free
@@ -50,8 +51,8 @@ class BatchOf {
       std::copy_n(position, described.info.dof, own.simulation->y.at.position.begin());
       std::copy_n(velocity, described.info.dof, own.simulation->y.at.velocity.begin());
       own.recorder.emplace(own.system, experiment, own.out, 0, 0, false);
-      own.recorder->write_together(assemble<Of<Lanes>, Lanes>(
-          described, std::vector<Lanes>(own.with.values.begin(), own.with.values.end()), own.with));
+      own.alike = assemble_alike<Of>(described, own.with);
+      own.recorder->write_together(own.alike);
       if (own.simulation->inputs().remembers) {  // its loop reads the past, which lanes do not keep
         own.simulation->run(own.out, *own.recorder);
         finish(own, {});

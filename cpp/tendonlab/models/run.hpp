@@ -72,6 +72,11 @@ template <class System, class T>
 System assemble(const Assembly& of) {
   return assemble<System, T>(of.described, of.seeded<T>(of.with.values, integrate::Seed::Of::parameter), of.with);
 }
+/// The system with the same numbers in every lane.
+template <template <class> class Of>
+Of<Lanes> assemble_alike(const Description& described, const Configuration& with) {
+  return assemble<Of<Lanes>, Lanes>(described, {with.values.begin(), with.values.end()}, with);
+}
 template <class T, class System>
 integrate::Drive<T> drive_of(const System& system, const integrate::Experiment& experiment) {
   const auto& sensor = system.sensor[static_cast<std::size_t>(experiment.loop.output)];
@@ -88,9 +93,10 @@ void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) 
   std::copy(velocity.begin(), velocity.end(), simulation.y.at.velocity.begin());
   integrate::Recorder<Of, T> recorder(system, experiment, job.out, static_cast<int>(job.first),
                                       static_cast<int>(job.count), job.shows_ports());
+  std::optional<Of<Lanes>> alike;
   if constexpr (std::is_same_v<T, double>) {
-    const std::vector<Lanes> values(job.with.values.begin(), job.with.values.end());
-    recorder.write_together(assemble<Of<Lanes>, Lanes>(job.described, values, job.with));
+    alike = assemble_alike<Of>(job.described, job.with);
+    recorder.write_together(*alike);
   }
   simulation.run(job.out, recorder);
 }
