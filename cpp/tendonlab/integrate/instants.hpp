@@ -16,11 +16,22 @@ class Instants {
   /// The outputs at eight states, as their sensors show them.
   template <class Modes>
   [[gnu::noinline, gnu::flatten]] auto outputs(const Y& y, const Modes& modes, const Readings<double>& inputs) {
-    for (std::size_t m = 0; m < modes.mode.size(); ++m) frame.mode[m] = Lanes(modes.mode[m]);
-    At at{*this, y, inputs, {}};
+    At at = instants(y, modes, inputs);
     auto seen = observe(system, at);
     for (std::size_t c = 0; c < seen.size(); ++c) seen[c] = system.sensor[c].apply(seen[c]);
     return seen;
+  }
+  /// Velocity, position, load and force of each port.
+  template <class Modes>
+  [[gnu::noinline, gnu::flatten]] auto ports(const Y& y, const Modes& modes, const Readings<double>& inputs) {
+    At at = instants(y, modes, inputs);
+    std::array<Lanes, 4 * slots<System>> rows;
+    unroll<slots<System>>([&](auto i) TENDONLAB_ALWAYS {
+      const auto& port = at.coupled().port[i];
+      rows[4 * i] = port.velocity, rows[4 * i + 1] = port.position, rows[4 * i + 2] = port.load;
+      rows[4 * i + 3] = at.template force<i>();
+    });
+    return rows;
   }
 
  private:
@@ -52,6 +63,12 @@ class Instants {
       return std::get<slot>(all.system.slot).respond(coupled().port[slot], z).force;
     }
   };
+
+  template <class Modes>
+  At instants(const Y& y, const Modes& modes, const Readings<double>& inputs) {
+    for (std::size_t m = 0; m < modes.mode.size(); ++m) frame.mode[m] = Lanes(modes.mode[m]);
+    return {*this, y, inputs, {}};
+  }
 
   const System& system;
   LaneReadings in;

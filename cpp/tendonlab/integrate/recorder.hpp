@@ -34,7 +34,7 @@ class Recorder {
     const double reached = over.start + over.taken + 1e-12 * (1.0 + std::fabs(over.start));
     const double per_length = 1.0 / over.length;
     if constexpr (std::is_same_v<T, double>)
-      if (together && !late && !plain_modes.frame.holds) write_groups(s, over, reached, plain_modes.frame, in);
+      if (together && !plain_modes.frame.holds) write_groups(s, over, reached, plain_modes.frame, in);
     if (late)
       write_late(s, over, reached, port_modes, in);
     else
@@ -57,29 +57,43 @@ class Recorder {
 
  private:
   static constexpr std::ptrdiff_t fewest = 3;  ///< samples that are written together
-  template <class Frame, class Inputs>
-  void write_groups(const Step<Y>& s, const Interval& over, double reached, const Frame& frame, const Inputs& in) {
+  /// Samples of one step, eight at a time from the `first` on: write(states, first).
+  template <class Write>
+  void in_groups(const Step<Y>& s, const Interval& over, double reached, std::size_t& first, Write&& write) {
     constexpr auto most = static_cast<std::ptrdiff_t>(Lanes::count);
-    const auto end = std::upper_bound(time.begin() + static_cast<std::ptrdiff_t>(next[0]), time.end(), reached);
+    const auto end = std::upper_bound(time.begin() + static_cast<std::ptrdiff_t>(first), time.end(), reached);
     for (;;) {
-      const auto from = time.begin() + static_cast<std::ptrdiff_t>(next[0]);
+      const auto from = time.begin() + static_cast<std::ptrdiff_t>(first);
       const auto here = std::min(end - from, most);
       if (here < fewest) return;
-      const bool full = time.end() - from >= most;  // surplus samples are written again by the steps that they are in
+      const bool full = time.end() - from >= most;
       const Lanes at =
           full ? Lanes(&*from) : by_lane([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; });
       auto y = s.at(Lanes((at - over.start) * (1.0 / over.length)));
       y.at.time = at;
-      const auto seen = together->outputs(y, frame, in);
-      for (std::size_t c = 0; c < channels; ++c) {
-        double* to = &out.value[c * time.size() + next[0]];
-        if (full)
-          seen[c].store(to);
-        else
-          for (int l = 0; l < here; ++l) to[l] = seen[c][l];
-      }
-      next[0] += static_cast<std::size_t>(here);
+      write(y, first);
+      first += static_cast<std::size_t>(here);
     }
+  }
+  /// Surplus samples are written again by the steps that they are in.
+  void put(const Lanes& values, std::vector<double>& into, std::size_t row, std::size_t first) const {
+    double* to = &into[row * time.size() + first];
+    const std::size_t left = time.size() - first;
+    if (left >= static_cast<std::size_t>(Lanes::count)) return values.store(to);
+    for (std::size_t l = 0; l < left; ++l) to[l] = values[static_cast<int>(l)];
+  }
+  template <class Frame, class Inputs>
+  void write_groups(const Step<Y>& s, const Interval& over, double reached, const Frame& frame, const Inputs& in) {
+    if (!late)
+      in_groups(s, over, reached, next[0], [&](const auto& y, std::size_t first) {
+        const auto seen = together->outputs(y, frame, in);
+        for (std::size_t c = 0; c < channels; ++c) put(seen[c], out.value, c, first);
+      });
+    if (records_ports)
+      in_groups(s, over, reached, next_port, [&](const auto& y, std::size_t first) {
+        const auto rows = together->ports(y, frame, in);
+        for (std::size_t k = 0; k < rows.size(); ++k) put(rows[k], out.port, k, first);
+      });
   }
   template <class Inputs>
   [[gnu::noinline]] void write_late(const Step<Y>& s, const Interval& over, double reached,

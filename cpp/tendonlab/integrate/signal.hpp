@@ -61,26 +61,20 @@ struct Signal {
     if (empty()) return constant<S>(0.0);
     follow(plain(t), piece);
     if (holds) return lift<S>(coefficient<0>(piece));
-    const S x = t - start_of(piece);
-    return coefficient<0>(piece) +
-           x * (coefficient<1>(piece) + x * (coefficient<2>(piece) + x * coefficient<3>(piece)));
+    return at<0>(t, piece);
   }
   template <class S, class Piece>
   S slope(const S& t, Piece& piece) const {
     if (empty() || holds) return constant<S>(0.0);
     follow(plain(t), piece);
-    const S x = t - start_of(piece);
-    return coefficient<1>(piece) + x * (2.0 * coefficient<2>(piece) + x * (3.0 * coefficient<3>(piece)));
+    return at<1>(t, piece);
   }
   /// Integral from the first knot to `t`; a signal that is not given has none.
   template <class S, class Piece>
   S integral(const S& t, Piece& piece) const {
     if (empty()) return constant<S>(0.0);
     follow(plain(t), piece);
-    const S x = t - start_of(piece);
-    return gathered(piece) +
-           x * (coefficient<0>(piece) + x * (coefficient<1>(piece) / 2.0 +
-                                             x * (coefficient<2>(piece) / 3.0 + x * (coefficient<3>(piece) / 4.0))));
+    return at<-1>(t, piece);
   }
   /// Joins equal pieces, and prepares `locate` and `integral`.
   void prepare() {
@@ -107,6 +101,29 @@ struct Signal {
   static constexpr double inf_time = 1e300;
 
  private:
+  /// The derivative of that order (-1: the integral) of the piece. Only numbers go through the polynomial: whatever `t`
+  /// depends on follows by the chain rule.
+  template <int order, class S, class Piece>
+  TENDONLAB_INLINE S at(const S& t, const Piece& piece) const {
+    if constexpr (std::is_same_v<S, Plain<S>>)
+      return cubic<order>(S(t - start_of(piece)), piece);
+    else if constexpr (partials < S >> 0)
+      return chain(at<order>(t.value, piece), at<order + 1>(t.value, piece), t);
+    else
+      return chain(at<order>(plain(t), piece), at<order + 1>(plain(t), piece), t);
+  }
+  template <int order, class P, class Piece>
+  TENDONLAB_INLINE P cubic(const P& x, const Piece& piece) const {
+    const auto c3 = coefficient<3>(piece);
+    if constexpr (order == 3) return P(6.0 * c3);
+    const auto c2 = coefficient<2>(piece);
+    if constexpr (order == 2) return 2.0 * c2 + x * (6.0 * c3);
+    const auto c1 = coefficient<1>(piece);
+    if constexpr (order == 1) return c1 + x * (2.0 * c2 + x * (3.0 * c3));
+    const auto c0 = coefficient<0>(piece);
+    if constexpr (order == 0) return c0 + x * (c1 + x * (c2 + x * c3));
+    return gathered(piece) + x * (c0 + x * (c1 / 2.0 + x * (c2 / 3.0 + x * (c3 / 4.0))));
+  }
   int guess(double time) const {
     const double pieces_before = (time - knots.front()) * pieces_per_second, last = pieces() - 1;
     return static_cast<int>(std::max(0.0, std::min(pieces_before, last)));

@@ -10,6 +10,8 @@ template <template <class> class Of>
 class BatchOf {
   using Simulation = integrate::Simulation<Of, double>;
   using Recorder = integrate::Recorder<Of, double>;
+  using Running = typename integrate::Lockstep<Of>::Simulations;
+  using Plans = std::array<typename Simulation::Attempt, Lanes::count>;
   struct Lane {
     std::size_t point = 0;
     Configuration with;
@@ -67,12 +69,31 @@ class BatchOf {
     const auto& values = lane[l].with.values;
     if (numbers.empty()) numbers.assign(values.begin(), values.end());
     for (std::size_t k = 0; k < values.size(); ++k) numbers[k].set(static_cast<int>(l), values[k]);
-    system = assemble<Of<Lanes>, Lanes>(described, numbers, lane[l].with);
+    effects = lane[l].with;
+    assembled = false;
   }
-  /// One attempt of those that run; false if none does.
+  const Of<Lanes>& system_in_lanes() {
+    if (!assembled) system = assemble<Of<Lanes>, Lanes>(described, numbers, effects);
+    assembled = true;
+    return system;
+  }
+  /// One attempt of some that run; false if none does.
   bool step() {
-    typename integrate::Lockstep<Of>::Simulations running{};
-    std::array<typename Simulation::Attempt, Lanes::count> plan;
+    Running running{};
+    Plans plan;
+    if (!plan_all(running, plan)) return false;
+    lockstep.attempt(running, system_in_lanes(), plan, [&](std::size_t l, const auto& step) {
+      Lane& own = lane[l];
+      own.planned.reset();
+      guarded(own, [&] {
+        own.simulation->take(plan[l], step, own.out, *own.recorder);
+        if (own.simulation->done()) finish(own, {});
+      });
+    });
+    return true;
+  }
+  /// What each simulation tries next; false if none runs.
+  bool plan_all(Running& running, Plans& plan) {
     bool any_runs = false;
     for (std::size_t l = 0; l < lane.size(); ++l) {
       Lane& own = lane[l];
@@ -80,15 +101,6 @@ class BatchOf {
       if (!own.simulation) continue;
       running[l] = &*own.simulation, plan[l] = *own.planned, any_runs = true;
     }
-    if (any_runs)
-      lockstep.attempt(running, system, plan, [&](std::size_t l, const auto& step) {
-        Lane& own = lane[l];
-        own.planned.reset();
-        guarded(own, [&] {
-          own.simulation->take(plan[l], step, own.out, *own.recorder);
-          if (own.simulation->done()) finish(own, {});
-        });
-      });
     return any_runs;
   }
   template <class F>
@@ -111,7 +123,9 @@ class BatchOf {
   const PointDone& done;
   integrate::Lockstep<Of> lockstep;
   std::array<Lane, Lanes::count> lane;
+  Configuration effects;  ///< of every point
   std::vector<Lanes> numbers;
   Of<Lanes> system{};
+  bool assembled = false;  ///< has `system` these numbers?
 };
 }  // namespace tendonlab::systems
