@@ -17,7 +17,7 @@ FIGURE = ROOT / "docs" / "figures" / "work-precision.svg"
 
 def write(job: str, text: str, *, rounds: int) -> None:
     """Put the tables of a job in their place, and the figure if the job drew it."""
-    said = f"Measured at commit {commit()} on {machine()}; least of {rounds} rounds.\n"
+    said = f"Measured at commit {commit()} on {machine()}; least of at most {rounds} rounds.\n"
     PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), job, f"{text}\n{said}"), encoding="utf-8")
     if job == "single" and OUT.exists():
         shutil.copy(OUT, FIGURE)
