@@ -337,3 +337,18 @@ def test_refusal_is_one_line_and_exit_code_2(drawn: Drawn, tmp_path: Path, monke
     monkeypatch.setattr(sys, "argv", ["blind", "run", str(drawn.cases), "--out", str(tmp_path)])
     assert commands.main() == 2
     assert capsys.readouterr().err.startswith(f"ValueError: {tmp_path / 'answers.toml'}: a sealed truth")
+
+
+def test_strengths_bound_the_target_and_change_nothing_else() -> None:
+    usual = draw_rig(np.random.default_rng(7), effect="joint:stribeck", kind="effect")
+    strong = draw_rig(np.random.default_rng(7), effect="joint:stribeck", kind="effect", strengths=(3.0, 20.0))
+    assert 3.0 <= strong.target <= 20.0
+    assert np.log(strong.target / 3.0) / np.log(20.0 / 3.0) == pytest.approx(np.log(usual.target) / np.log(6.0))
+    assert (strong.truth, strong.noise, strong.seed) == (usual.truth, usual.noise, usual.seed)
+    assert {case.strengths for case in plan(3, 4, strengths=(3.0, 20.0))} == {(3.0, 20.0)}
+
+
+@pytest.mark.parametrize("given", [(0.0, 2.0), (3.0, 1.0), (1.0, float("inf"))])
+def test_strengths_that_are_no_range_are_refused(given: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match=rf"strengths = {given[0]}, {given[1]}: expected two numbers"):
+        plan(3, 4, strengths=given)

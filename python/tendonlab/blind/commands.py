@@ -39,6 +39,10 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
     text = "share of the cases whose cause the library lacks, 0 to 1 (default 0)"
     drawing.add_argument("--unknown", type=float, default=0.0, metavar="SHARE", dest="unknown_share", help=text)
+    text = "least and largest gap/noise of an effect (default 1 6)"
+    drawing.add_argument(
+        "--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=("LEAST", "LARGEST"), help=text
+    )
     drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
 
     text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
@@ -66,7 +70,7 @@ def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
     options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "unknown_share", "jobs")}
-    print(draw(given.seed, given.count, given.out, **options))
+    print(draw(given.seed, given.count, given.out, strengths=tuple(given.strengths), **options))
     return 0
 
 

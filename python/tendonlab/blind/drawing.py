@@ -31,6 +31,7 @@ def draw(
     system: str = "two_inertia",
     repeats: float = 1.0,
     unknown_share: float = 0.0,
+    strengths: tuple[float, float] = (1.0, 6.0),
     jobs: int = 2,
     num_samples: int | None = None,
     step: float | None = None,
@@ -42,12 +43,14 @@ def draw(
     `system`: "two_inertia", "rigid_joint", or "mixed" for both.
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
     The share `unknown_share` lacks an effect that the library does not have either.
+    The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`.
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
     FileExistsError if one of the two folders exists.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
-    wanted = list(enumerate(plan(seed, count, system=system, repeats=repeats, unknown_share=unknown_share)))
+    planned = plan(seed, count, system=system, repeats=repeats, unknown_share=unknown_share, strengths=strengths)
+    wanted = list(enumerate(planned))
     _make_folders(cases, sealed)
     batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
     work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
@@ -88,7 +91,7 @@ def _draw_batch(
             for i, wanted in open_cases.items()
         }
         for (i, rig), strength in zip(rigs.items(), tune(list(rigs.values())), strict=True):
-            if rig.kind not in LACKING or strength.met or (strength.limited and strength.gap_noise >= 1.0):
+            if rig.kind not in LACKING or strength.met or _is_enough(strength, batch[0][1]):
                 settled[i] = (rig, strength)
                 del open_cases[i]
             else:
@@ -99,6 +102,11 @@ def _draw_batch(
         write_dataset(rig, run, cases / name, name=name, description=_description(rig))
         (sealed / f"{name}.toml").write_text(sealed_toml(rig, strength, redrawn=redrawn[i]), encoding="utf-8")
     return len(batch)
+
+
+def _is_enough(strength: Strength, wanted: Wanted) -> bool:
+    """An effect at its physical limit counts where the limit lies within the range that was asked for."""
+    return strength.limited and strength.gap_noise >= wanted.strengths[0]
 
 
 def _description(rig: Rig) -> str:
@@ -122,4 +130,5 @@ def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int 
         system=system,
         num_samples=num_samples,
         has_repeats=wanted.has_repeats,
+        strengths=wanted.strengths,
     )

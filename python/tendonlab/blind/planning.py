@@ -24,28 +24,39 @@ class Wanted:
     kind: str
     effect: str
     has_repeats: bool
+    strengths: tuple[float, float] = (1.0, 6.0)
 
 
 def plan(
-    seed: int, count: int, *, system: str = "two_inertia", repeats: float = 1.0, unknown_share: float = 0.0
+    seed: int,
+    count: int,
+    *,
+    system: str = "two_inertia",
+    repeats: float = 1.0,
+    unknown_share: float = 0.0,
+    strengths: tuple[float, float] = (1.0, 6.0),
 ) -> list[Wanted]:
     """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
 
     The draw of the repeats changes nothing else: the cases of a seed are the same with and without repeats. Raises
-    ValueError if count < 1, if `repeats` or `unknown_share` is no share, and for another system.
+    ValueError if count < 1, if `repeats` or `unknown_share` is no share, if `strengths` are no range, and for another
+    system.
     """
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
     for name, share in (("repeats", repeats), ("unknown_share", unknown_share)):
         if not 0.0 <= share <= 1.0:
             raise ValueError(f"{name} = {share}: expected a share from 0 to 1")
+    least, largest = strengths
+    if not 0.0 < least < largest < np.inf:
+        raise ValueError(f"strengths = {least}, {largest}: expected two numbers, 0 < least < largest")
     if system not in (*SYSTEMS, MIXED):
         raise ValueError(f"system = {system!r}: expected one of {', '.join((*SYSTEMS, MIXED))}")
     repeated = _some(seed, 1, count=count, share=repeats)
     kinds = _mixed_kinds if system == MIXED else partial(_kinds, system=system)
     drawn = kinds(seed, count, unknown_share=unknown_share)
     return [
-        Wanted(system=name, kind=kind, effect=effect, has_repeats=i in repeated)
+        Wanted(system=name, kind=kind, effect=effect, has_repeats=i in repeated, strengths=strengths)
         for i, (name, kind, effect) in enumerate(drawn)
     ]
 

@@ -67,10 +67,12 @@ def draw_rig(
     excitation: str | None = None,
     num_samples: int | None = None,
     has_repeats: bool = True,
+    strengths: tuple[float, float] = (1.0, 6.0),
 ) -> Rig:
     """Draw a rig of one kind around the system's typical parameters (+-25 %).
 
-    `excitation` None: drawn, rich twice as often as poor. `num_samples` None: as many as the system's records take.
+    `strengths`: least and largest gap/noise of the effect. `excitation` None: drawn, rich twice as often as poor.
+    `num_samples` None: as many as the system's records take.
     """
     truth = {n: x * (1.0 if n in system.exact else draw.uniform(0.75, 1.25)) for n, x in system.typical.items()}
     chosen = str(draw.choice(["rich", "rich", "poor"]))
@@ -93,7 +95,7 @@ def draw_rig(
         has_controller=bool(draw.random() < 0.5),
         outputs=outputs,
         noise=float(np.exp(draw.uniform(np.log(0.7), np.log(1.8)))),
-        target=float(np.exp(draw.uniform(np.log(1.0), np.log(6.0)))),
+        target=float(np.exp(draw.uniform(*np.log(strengths)))),
         seed=int(draw.integers(2**31)),
         num_settle=min(round(SETTLE / period), size),  # short records, as tests make them, settle shortly
     )
