@@ -79,6 +79,22 @@ def test_factors_from_run_to_run_are_found(twin_case: Any) -> None:
     assert motor == pytest.approx(0.0, abs=0.005)
 
 
+def test_an_added_effect_scales_with_the_friction_of_its_element(twin_case: Any) -> None:
+    """One experiment whose joint friction, Stribeck excess included, is 10 % larger: one factor takes all of it up."""
+    groups = friction_groups(twin_case.system, with_added=True)
+    case = replace(twin_case, scatter=tuple((tuple(group), 0.05) for group in groups))
+    system = case.system.with_effects({"joint:stribeck": {"joint_static_excess": 0.2, "joint_stribeck_velocity": 0.1}})
+    own = ("joint_coulomb", "joint_viscous", "joint_static_excess")
+    larger = system.with_parameters({name: 1.1 * system.parameters[name] for name in own})
+    i = case.train[0]
+    case = _measured(case, i, case.run(i, larger)["outputs"]).training_on([i])
+    fit = Fitter(case, white(case.noise), _core.Cancel()).fit(system, known=True)
+    motor, joint = fit.initial[0][-2:]
+    assert joint == pytest.approx(np.log(1.1), rel=0.02)
+    assert motor == pytest.approx(0.0, abs=0.005)
+    assert fit.whitened_square < 0.01
+
+
 def test_the_initial_state_is_found_in_the_first_fifth_of_a_second(twin_case: Any) -> None:
     """Noise of a later sample does not matter, and a start away from the prior's mean is found."""
     i = twin_case.train[0]

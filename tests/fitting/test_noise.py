@@ -106,3 +106,7 @@ def test_friction_of_an_element_scales_together(twin_case: Any) -> None:
     names = [p.name for p in twin_case.system.info.parameters]
     groups = [{names[k] for k in group} for group in friction_groups(twin_case.system)]
     assert groups == [{"motor_coulomb", "motor_viscous"}, {"joint_coulomb", "joint_viscous"}]
+    added = [{names[k] for k in group} for group in friction_groups(twin_case.system, with_added=True)]
+    assert {"motor_coulomb", "motor_static_excess"} < added[0]
+    assert {"joint_coulomb", "joint_static_excess"} < added[1]
+    assert len(added) == 2

@@ -28,7 +28,7 @@ def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cance
     Friction then varies from run to run as the floor says, and the simulator is as exact as the floor requires."""
     seen = _sensitivities(case, rough, pool)
     floor = estimate(case, seen, case.train)
-    groups = tuple((tuple(group), floor.tau) for group in friction_groups(case.system))
+    groups = tuple((tuple(group), floor.tau) for group in friction_groups(case.system, with_added=True))
     case = fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd)))
     return Fitter(replace(case, scatter=groups), floor, cancel, seen)
 

@@ -129,11 +129,12 @@ class Case:
         settings = self.settings(ports=ports)
         return dict(_core.simulate(system.kind, values, active, self.started(i, own), list(seeds), settings))
 
-    def task(self, i: int, whitening: _core.Whitening) -> _core.Task:
-        """Experiment i for the compiled fit."""
+    def task(self, i: int, whitening: _core.Whitening, system: System) -> _core.Task:
+        """Experiment i for the compiled fit of `system`, whose own parameters differ from run to run."""
         ready = self.prepared[i]
         fixed, added = self._conditions(i)
-        scatter = [(list(group), sd) for group, sd in self.scatter]
+        names = [p.name for p in system.info.parameters]
+        scatter = [([k for k in group if names[k] in system.parameters], sd) for group, sd in self.scatter]
         initial, sd = list(ready.initial), list(ready.initial_sd)
         return _core.Task(
             ready.core, whitening, fixed=fixed, added=added, initial=initial, initial_sd=sd, scatter=scatter

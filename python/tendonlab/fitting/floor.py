@@ -32,21 +32,28 @@ class Sensitivities:
     initial: np.ndarray
 
 
-def friction_groups(system: System) -> list[list[int]]:
-    """Indices of the friction parameters of each element: they scale together from run to run."""
+def friction_groups(system: System, *, with_added: bool = False) -> list[list[int]]:
+    """Indices of the friction parameters of each element that has friction: they scale together from run to run.
+    `with_added`: also those of the friction effects that the system lacks, which a candidate may add."""
     info = system.info
     groups = []
     for element in dict.fromkeys(port.element for port in info.ports):
-        group = [
+        able = [
             i
             for i, p in enumerate(info.parameters)
-            if p.element == element and p.name in system.parameters and p.amplitude and p.purpose != "share"
-            and p.dimension in ("effort", "damping", "ratio") and system.parameters[p.name] != 0.0
-            and f"{p.element}:{p.effect}" in system.effects
+            if p.element == element and p.amplitude and p.purpose != "share"
+            and p.dimension in ("effort", "damping", "ratio")
         ]  # fmt: skip
-        if group:
-            groups.append(group)
+        present = [i for i in able if _is_present(system, i)]
+        if present:
+            groups.append(able if with_added else present)
     return groups
+
+
+def _is_present(system: System, i: int) -> bool:
+    """Whether an effect of the system has this parameter, and not 0."""
+    p = system.info.parameters[i]
+    return f"{p.element}:{p.effect}" in system.effects and system.parameters.get(p.name, 0.0) != 0.0
 
 
 def sensitivities(case: Case, system: System, i: int, own: Sequence[float]) -> Sensitivities:

@@ -76,7 +76,7 @@ class Problem:
 
     def _stated(self) -> tuple[Any, ...]:
         system, case = self.system, self.case
-        tasks = [case.task(i, self.floor.whitening(case.prepared[i].measured)) for i in case.train]
+        tasks = [case.task(i, self.floor.whitening(case.prepared[i].measured), system) for i in case.train]
         flags = system.active(keep_zero=True)
         return system.kind, system.values(), flags, tasks, self.free, case.settings()
 
