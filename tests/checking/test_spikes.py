@@ -16,6 +16,20 @@ def test_outliers_are_found_in_fast_motion() -> None:
     assert np.flatnonzero(outliers(wrong)).tolist() == at
 
 
+def test_an_outlier_does_not_hide_the_next_but_one() -> None:
+    """Both to the same side, as in a corner of the motion."""
+    wrong = CHIRP + NOISE
+    wrong[[718, 720]] += [0.25, 0.37]
+    assert np.flatnonzero(outliers(wrong)).tolist() == [718, 720]
+
+
+def test_an_outlier_at_the_end_is_no_noise() -> None:
+    """The last sample whose path is known from both sides: no copy of it tells how large the noise is."""
+    wrong = CHIRP[:979] + NOISE[:979]  # ends in a fast part
+    wrong[-3] -= 0.3
+    assert np.flatnonzero(outliers(wrong)).tolist() == [976]
+
+
 def test_smooth_motion_has_none() -> None:
     assert not outliers(CHIRP + NOISE).any()
 

@@ -16,35 +16,35 @@ SPIKE = 25.0  # the same, of an input: what the controller did is no error
 BEND = 6.0  # times what the running median itself bends nearby
 RETURN = 0.2  # of a spike of an input, by which its neighbours may differ
 CORNER = 2.0  # times by how much the steps before and after a sample differ, within which it is a corner of the motion
-NEAR = (1, 2, 1)  # neighbours that tell the path, pass by pass: two outliers in a row hide one another from the nearest
+# Neighbours that tell the path, pass by pass: two outliers in a row, or with one sample between, hide one another.
+NEAR = ((1, 2), (2, 3), (1, 3), (1, 2))
 MOST = 0.03  # of a record: what is more frequent belongs to the signal
 
 
 def outliers(values: np.ndarray) -> np.ndarray:
     """Which samples of a record are outliers, shape (n,); NaN is none."""
     found = _far_from_median(values, DEVIATIONS)
-    for near in NEAR:
+    for near, far in NEAR:
         kept = np.flatnonzero(np.isfinite(values) & ~found)
         if len(kept) < 3 * WINDOW:
             break
         filled = np.interp(np.arange(len(values)), kept, values[kept])
-        found[np.intersect1d(_off_the_path(filled, near), kept)] = True
+        found[np.intersect1d(_off_the_path(filled, near, far), kept)] = True
     return found if found.mean() <= MOST else np.zeros_like(found)
 
 
-def _off_the_path(y: np.ndarray, near: int) -> np.ndarray:
-    """Which samples lie off the cubic through two neighbours on either side, the `near`-th ones and those behind them;
-    a corner of that path, or a jump in it, is none."""
+def _off_the_path(y: np.ndarray, near: int, far: int) -> np.ndarray:
+    """Which samples lie off the cubic through two neighbours on either side, the `near`-th and the `far`-th ones; a
+    corner of that path, or a jump in it, is none."""
     from scipy.ndimage import median_filter
 
-    far = near + 1
     inner, outer = far**2 / (far**2 - near**2), -(near**2) / (far**2 - near**2)  # the cubic at the middle
     at = np.arange(far, len(y) - far)
-    left, right = y[at - near] - y[at - far], y[at + far] - y[at + near]
+    left, right = (y[at - near] - y[at - far]) / (far - near), (y[at + far] - y[at + near]) / (far - near)
     path = 0.5 * inner * (y[at - near] + y[at + near]) + 0.5 * outer * (y[at - far] + y[at + far])
     jump = np.abs(y[at + near] - y[at - near] - near * (left + right))
     away = np.abs(y[at] - path)
-    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="nearest"))
+    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="mirror"))
     allowed = DEVIATIONS * np.fmax(noise, smallest_change(y)) + CORNER * np.abs(right - left) + jump
     return np.asarray(at[away > allowed])
 
@@ -60,7 +60,7 @@ def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
     y = values[kept]
     middle = median_filter(y, WINDOW, mode="nearest")
     away = np.abs(y - middle)
-    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="nearest"))
+    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="mirror"))
     bends = np.abs(np.diff(middle, 2, prepend=middle[0], append=middle[-1]))
     allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * maximum_filter1d(bends, WINDOW)
     found[kept] = away > allowed
