@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from tendonlab.identification.identify import identify
     from tendonlab.identification.result import Identification
     from tendonlab.mechanics.tendons import BranchLosses, Reducer, TendonTransmission
+    from tendonlab.rehearsal.rehearse import rehearse
+    from tendonlab.rehearsal.result import Rehearsal
     from tendonlab.report.diagnosis import Diagnosis
     from tendonlab.simulation.catalog import kinds, system_info
     from tendonlab.simulation.records import Experiment
@@ -34,6 +36,7 @@ __all__ = [
     "NumericalError",
     "ParameterError",
     "Reducer",
+    "Rehearsal",
     "System",
     "TendonTransmission",
     "Trajectory",
@@ -46,6 +49,7 @@ __all__ = [
     "kinds",
     "load",
     "loading",
+    "rehearse",
     "sensing",
     "sheath",
     "sweep",
@@ -65,6 +69,8 @@ _HOMES = {
     "tendonlab.identification.identify": "identify",
     "tendonlab.identification.result": "Identification",
     "tendonlab.mechanics.tendons": "BranchLosses Reducer TendonTransmission",
+    "tendonlab.rehearsal.rehearse": "rehearse",
+    "tendonlab.rehearsal.result": "Rehearsal",
     "tendonlab.report.diagnosis": "Diagnosis",
     "tendonlab.simulation.catalog": "kinds system_info",
     "tendonlab.simulation.records": "Experiment",
@@ -83,6 +89,7 @@ _PACKAGES = (
     "mechanics",
     "papers",
     "procedures",
+    "rehearsal",
     "report",
     "simulation",
     "sweeping",

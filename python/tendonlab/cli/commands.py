@@ -53,6 +53,7 @@ def _complain(text: str, *, code: int = 2) -> int:
 def _parser() -> argparse.ArgumentParser:
     from tendonlab import __version__
     from tendonlab.blind.commands import add_parser as add_blind
+    from tendonlab.cli.rehearse import add_parser as add_rehearse
 
     parser = argparse.ArgumentParser(
         prog="tendonlab",
@@ -63,6 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = _commands(parser, dest="command", metavar="COMMAND")
     for add in (_add_demo, _add_check, _add_diagnose, _add_identify, _add_simulate, _add_sweep):
         add(commands)
+    add_rehearse(commands)
     for add in (_add_effects, _add_systems, _add_datasets):
         add(commands)
     add_blind(commands)

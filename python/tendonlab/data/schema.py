@@ -14,14 +14,15 @@ FILE = "dataset.toml"
 
 @dataclass(frozen=True)
 class Table:
-    """One table of the file; `where` is its dotted key, empty at the top."""
+    """One table of the file named `file`; `where` is its dotted key, empty at the top."""
 
     values: Mapping[str, object]
     where: str = ""
+    file: str = FILE
 
     def error(self, key: str, problem: str) -> DatasetError:
         """The error to raise about `key` of this table."""
-        return DatasetError(f"{FILE}, key {self._dotted(key)}: {problem}")
+        return DatasetError(f"{self.file}, key {self._dotted(key)}: {problem}")
 
     def allow(self, keys: Sequence[str]) -> None:
         """Raise DatasetError at the first key that is not among `keys`."""
@@ -91,7 +92,7 @@ class Table:
         value = self._get(key, {} if optional else None, "a table")
         if not isinstance(value, dict):
             raise self.error(key, f"{value!r}: expected a table")
-        return Table(value, self._dotted(key))
+        return Table(value, self._dotted(key), self.file)
 
     def tables(self, key: str) -> list["Table"]:
         """The array of tables under `key`, at least one."""
@@ -100,7 +101,7 @@ class Table:
             raise self.error(key, f"expected [[{key}]] tables, got {type(value).__name__}")
         if not value:
             raise self.error(key, f"is empty; expected at least one [[{key}]] table")
-        return [Table(item, f"{self._dotted(key)}[{index}]") for index, item in enumerate(value)]
+        return [Table(item, f"{self._dotted(key)}[{index}]", self.file) for index, item in enumerate(value)]
 
     def _get(self, key: str, default: object, expected: str) -> object:
         value = self.values.get(key, default)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @cache
-def _environment() -> Environment:
+def environment() -> Environment:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     made = Environment(
@@ -49,7 +49,7 @@ def page(diagnosis: Diagnosis, pictures: Mapping[str, Picture]) -> str:
     from tendonlab.report.outline import SECTIONS
 
     return (
-        _environment()
+        environment()
         .get_template("report.html.j2")
         .render(
             why=diagnosis,
@@ -66,7 +66,7 @@ def effects_table(diagnosis: Diagnosis) -> str:
     """The ranked effects as an HTML table, for the page and for notebooks."""
     from tendonlab.report.sections.causes import listed
 
-    return _environment().get_template("effects.html.j2").render(why=diagnosis, findings=listed(diagnosis))
+    return environment().get_template("effects.html.j2").render(why=diagnosis, findings=listed(diagnosis))
 
 
 def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:

@@ -21,14 +21,14 @@ def fingerprint(layout: Layout, tolerance: float) -> dict[str, str]:
     kept = (None if reduction is None else reduction.name, function, keep.dtype, layout.outputs, layout.several)
     return {
         "package version": version(),
-        "system": _digest([repr((layout.system.to_dict(), layout.system.controller))]),
-        "points": _digest([repr((layout.points.names, dict(layout.points.sizes))), layout.points.values]),
-        "experiment": _digest(part for experiment in layout.experiments for part in _parts(experiment)),
-        "settings": _digest([repr((kept, float(tolerance)))]),
+        "system": digest([repr((layout.system.to_dict(), layout.system.controller))]),
+        "points": digest([repr((layout.points.names, dict(layout.points.sizes))), layout.points.values]),
+        "experiment": digest(part for experiment in layout.experiments for part in parts_of(experiment)),
+        "settings": digest([repr((kept, float(tolerance)))]),
     }
 
 
-def _parts(experiment: Experiment) -> Iterable[Any]:
+def parts_of(experiment: Experiment) -> Iterable[Any]:
     data = experiment.data
     stated = (experiment.conditions, experiment.add, experiment.initial, experiment.holds)
     yield repr((experiment.name, [sorted(given.items()) for given in stated], list(map(str, data.columns))))
@@ -55,7 +55,7 @@ def _constant(given: Any) -> Any:
     return repr(sorted(map(repr, given)) if isinstance(given, frozenset) else given)  # sets have no order
 
 
-def _digest(parts: Iterable[Any]) -> str:
+def digest(parts: Iterable[Any]) -> str:
     total = hashlib.sha256()
     for part in parts:
         total.update(np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else str(part).encode())

@@ -1,0 +1,107 @@
+"""How a rig's sensors read: their noise, its memory and their resolution, and the scatter of friction between runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.data import Dataset
+from tendonlab.diagnosis.floor import rough_fit
+from tendonlab.errors import DatasetError
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.floor import RUN_TO_RUN, estimate, sensitivities
+from tendonlab.fitting.noise import Floor, noise_of
+
+if TYPE_CHECKING:
+    from tendonlab.simulation.records import SignalSpec
+
+BURN_IN = 2000  # samples after which noise with memory has forgotten its start
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """The sensor of one output, SI. `noise`: sd of what drives the noise; `memory`: its autoregression, newest sample
+    first; `resolution`: 0 where readings are not rounded."""
+
+    name: str
+    noise: float
+    memory: tuple[float, ...] = ()
+    resolution: float = 0.0
+
+    def read(self, values: np.ndarray, random: np.random.Generator) -> np.ndarray:
+        """`values`, shape (n,), as the sensor logs them."""
+        from scipy.signal import lfilter
+
+        before = BURN_IN if self.memory else 0
+        noise = self.noise * random.normal(size=before + len(values))
+        if self.memory:
+            noise = lfilter([1.0], [1.0, *(-a for a in self.memory)], noise)[before:]
+        read = values + noise
+        return np.asarray(np.round(read / self.resolution) * self.resolution if self.resolution else read)
+
+
+@dataclass(frozen=True)
+class Noise:
+    """All that makes two runs of one experiment differ: the sensors, and the sd of the logarithm of each element's
+    friction. `repeated`: whether repeats of the rig showed it."""
+
+    sensors: tuple[Sensor, ...]
+    scatter: float
+    repeated: bool
+
+
+def noise_of_rig(rig: Dataset, case: Case) -> Noise:
+    """As the repeats of the rig show it; without repeats the sensors' white noise, as stated or estimated from the
+    logs, and the library's default scatter of friction."""
+    floor = _floor(case) if _repeats(rig) else None
+    repeated = floor is not None and floor.repeated
+    sensors = []
+    for c in case.measured:
+        signal = rig.signals[case.outputs[c]]
+        resolution = signal.resolution or 0.0
+        if floor is not None and repeated:
+            sensors.append(Sensor(signal.name, floor.sd[c], tuple(floor.ar[c]), resolution))
+        else:
+            sensors.append(Sensor(signal.name, _white(signal, case, c), (), resolution))
+    return Noise(tuple(sensors), floor.tau if floor is not None and repeated else RUN_TO_RUN, repeated)
+
+
+def stated_noise(rig: Dataset) -> Noise:
+    """As dataset.toml states it, for a rig without logs. Raises DatasetError for an output without `noise_sd` and
+    without `resolution`."""
+    sensors = []
+    for name in rig.outputs:
+        signal = rig.signals[name]
+        if signal.noise_sd is None and signal.resolution is None:
+            raise DatasetError(
+                f"dataset.toml, key signals.{name}.noise_sd: is missing; expected the sensor's noise, in "
+                f"{signal.unit}, because there are no logs to estimate it from"
+            )
+        sensors.append(Sensor(name, signal.noise_sd or 0.0, (), signal.resolution or 0.0))
+    return Noise(tuple(sensors), RUN_TO_RUN, repeated=False)
+
+
+def _repeats(rig: Dataset) -> bool:
+    labels = [e.repeat for e in rig if e.repeat is not None]
+    return len(labels) > len(set(labels))
+
+
+def _floor(case: Case) -> Floor:
+    rough = rough_fit(case, _core.Cancel())
+    initial = dict(zip(case.train, rough.initial, strict=True))
+    seen = [
+        sensitivities(case, rough.system, i, initial.get(i, case.own_mean(i).tolist()))
+        for i in range(len(case.experiments))
+    ]
+    return estimate(case, seen, case.train)
+
+
+def _white(signal: SignalSpec, case: Case, c: int) -> float:
+    """White noise before rounding: an estimate from rounded readings holds that of the rounding already."""
+    if signal.noise_sd is not None:
+        return signal.noise_sd
+    total = noise_of(signal, [ready.measured[c] for ready in case.prepared if np.isfinite(ready.measured[c]).any()])
+    return float(np.sqrt(max(0.0, total**2 - (signal.resolution or 0.0) ** 2 / 12.0)))
