@@ -89,6 +89,7 @@ def test_a_point_that_fails_says_why_and_costs_no_other() -> None:
         (np.empty((2, 2, len(TIME))), [0, 1], r"out: expected shape \(1, 2, 100\)"),
         (np.empty((1, 2, len(TIME)), dtype=int), [0, 1], "expected an array of float64 or float32"),
         (np.empty((1, 1, len(TIME))), [2], "channel 2: rigid_joint has 2 outputs"),
+        (np.empty((1, 2, len(TIME))), [1, 1], "channel 1: twice"),
     ],
 )
 def test_what_does_not_fit_is_refused(out: np.ndarray, channels: list[int], told: str) -> None:

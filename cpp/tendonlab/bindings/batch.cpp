@@ -1,6 +1,8 @@
 // The points of a sweep, from numpy and back into it.
 #include "tendonlab/models/batch.hpp"
 
+#include <algorithm>
+
 #include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/core/error.hpp"
 
@@ -37,9 +39,11 @@ std::vector<std::string> simulate_many(const std::string& kind, const PointRows<
   const SystemInfo& info = of.info();
   const py::ssize_t count = values.ndim() > 0 ? values.shape(0) : 0;
   const auto dof = static_cast<std::size_t>(info.dof);
-  for (const std::size_t c : channels)
+  for (const std::size_t c : channels) {
     if (c >= info.outputs.size())
       throw ParameterError(sentence("channel ", c, ": ", kind, " has ", info.outputs.size(), " outputs"));
+    if (std::count(channels.begin(), channels.end(), c) > 1) throw ParameterError(sentence("channel ", c, ": twice"));
+  }
   const Points points{static_cast<std::size_t>(count), rows_of("values", values, count, info.parameters.size()),
                       rows_of("active", active, count, info.effects.size()), rows_of("position", position, count, dof),
                       rows_of("velocity", velocity, count, dof)};

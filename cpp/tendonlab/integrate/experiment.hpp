@@ -53,13 +53,19 @@ struct Trajectory {
   std::vector<double> port;      ///< [port][velocity, position, load, force][sample]
   long attempts = 0, rejected = 0, events = 0;
 
-  /// Writes one output at one sample, and its derivatives into `width` columns of the gradient from `column` on.
+  /// Where the samples of each output go; null: nobody wants them.
+  using Rows = std::vector<double*>;
+  Rows rows() {
+    Rows all;
+    for (int c = 0; c < channels; ++c) all.push_back(value.data() + static_cast<std::ptrdiff_t>(c) * samples);
+    return all;
+  }
+  /// Writes the derivatives of one output at one sample into `width` columns of the gradient from `column` on.
   template <class T>
-  TENDONLAB_INLINE void write(std::size_t channel, std::size_t sample, const T& of, int column, int width) {
-    const auto stride = static_cast<std::size_t>(channels) * static_cast<std::size_t>(samples);
-    const std::size_t place = channel * static_cast<std::size_t>(samples) + sample;
-    value[place] = plain(of);
+  TENDONLAB_INLINE void write_derivatives(std::size_t channel, std::size_t sample, const T& of, int column, int width) {
     if constexpr (!std::is_same_v<T, double>) {
+      const auto stride = static_cast<std::size_t>(channels) * static_cast<std::size_t>(samples);
+      const std::size_t place = channel * static_cast<std::size_t>(samples) + sample;
       double* cell = &gradient[static_cast<std::size_t>(column) * stride + place];
       of.each_derivative(width, [&](double d) {
         *cell = d;

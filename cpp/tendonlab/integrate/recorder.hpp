@@ -12,12 +12,15 @@ class Recorder {
   using Y = StateOf<System, T>;
 
  public:
-  /// `column`: the first column of the trajectory's gradient that this run fills, `width` of them.
-  Recorder(const System& of, const Experiment& with, Trajectory& into, int first_column, int columns, bool with_ports)
+  /// Samples of the outputs go into `value_rows`, derivatives into `columns` columns of the trajectory's gradient from
+  /// the first on.
+  Recorder(const System& of, const Experiment& with, Trajectory& into, Trajectory::Rows value_rows, int first_column,
+           int columns, bool with_ports)
       : system(of),
         experiment(with),
         time(with.time),
         out(into),
+        rows(std::move(value_rows)),
         column(first_column),
         width(columns),
         records_ports(with_ports) {
@@ -43,8 +46,7 @@ class Recorder {
         y.at.time = T(time[next[0]]);
         Instant<System, T, Inputs> instant(port_modes, y, in);
         const auto seen = observe(system, instant);
-        for (std::size_t c = 0; c < channels; ++c)
-          out.write(c, next[0], system.sensor[c].apply(seen[c]), column, width);
+        for (std::size_t c = 0; c < channels; ++c) write(c, next[0], seen[c]);
       }
     if (!records_ports) return;
     for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {  // ports have no sensors
@@ -56,6 +58,11 @@ class Recorder {
   }
 
  private:
+  void write(std::size_t channel, std::size_t sample, const T& seen) {
+    const T shown = system.sensor[channel].apply(seen);
+    if (rows[channel]) rows[channel][sample] = plain(shown);
+    out.write_derivatives(channel, sample, shown, column, width);
+  }
   static constexpr std::ptrdiff_t fewest = 3;  ///< samples that are written together
   /// Samples of one step, eight at a time from the `first` on: write(states, first).
   template <class Write>
@@ -76,8 +83,8 @@ class Recorder {
     }
   }
   /// Surplus samples are written again by the steps that they are in.
-  void put(const Lanes& values, std::vector<double>& into, std::size_t row, std::size_t first) const {
-    double* to = &into[row * time.size() + first];
+  void put(const Lanes& values, double* row, std::size_t first) const {
+    double* to = row + first;
     const std::size_t left = time.size() - first;
     if (left >= static_cast<std::size_t>(Lanes::count)) return values.store(to);
     for (std::size_t l = 0; l < left; ++l) to[l] = values[static_cast<int>(l)];
@@ -87,12 +94,13 @@ class Recorder {
     if (!late)
       in_groups(s, over, reached, next[0], [&](const auto& y, std::size_t first) {
         const auto seen = together->outputs(y, frame, in);
-        for (std::size_t c = 0; c < channels; ++c) put(seen[c], out.value, c, first);
+        for (std::size_t c = 0; c < channels; ++c)
+          if (rows[c]) put(seen[c], rows[c], first);
       });
     if (records_ports)
       in_groups(s, over, reached, next_port, [&](const auto& y, std::size_t first) {
-        const auto rows = together->ports(y, frame, in);
-        for (std::size_t k = 0; k < rows.size(); ++k) put(rows[k], out.port, k, first);
+        const auto of_ports = together->ports(y, frame, in);
+        for (std::size_t k = 0; k < of_ports.size(); ++k) put(of_ports[k], &out.port[k * time.size()], first);
       });
   }
   template <class Inputs>
@@ -105,7 +113,7 @@ class Recorder {
         Y y = s.at(begun ? share : T(0.0));
         y.at.time = begun ? then : T(over.start);
         Instant<System, T, Inputs> instant(port_modes, y, in);
-        out.write(c, next[c], system.sensor[c].apply(observe(system, instant)[c]), column, width);
+        write(c, next[c], observe(system, instant)[c]);
       }
   }
   /// Velocity, position, load and force of each port.
@@ -123,6 +131,7 @@ class Recorder {
   const Experiment& experiment;
   const std::vector<double>& time;
   Trajectory& out;
+  const Trajectory::Rows rows;
   const int column, width;
   const bool records_ports;
   bool late = false;

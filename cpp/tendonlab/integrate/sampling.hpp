@@ -53,9 +53,13 @@ class Sampling {
       if (shows) write_ports(k, sample);
     }
     out.attempts = static_cast<long>(time.size());
+    const auto rows = out.rows();
     for (std::size_t c = 0; c < channels; ++c)
-      for (std::size_t k = 0; k < time.size(); ++k)
-        out.write(c, k, system.sensor[c].apply(seen(all, c, k)), column, width);
+      for (std::size_t k = 0; k < time.size(); ++k) {
+        const T shown = system.sensor[c].apply(seen(all, c, k));
+        rows[c][k] = plain(shown);
+        out.write_derivatives(c, k, shown, column, width);
+      }
   }
 
  private:

@@ -24,9 +24,8 @@ class BatchOf {
   };
 
  public:
-  BatchOf(const Description& of, const integrate::Experiment& of_all, const integrate::Settings& with,
-          const PointDone& when_done)
-      : described(of), experiment(of_all), settings(with), done(when_done), lockstep(of_all) {}
+  BatchOf(const Description& of, const integrate::Experiment& of_all, const integrate::Settings& with, PointSink& into)
+      : described(of), experiment(of_all), settings(with), sink(into), lockstep(of_all) {}
 
   void run(const Points& points, const std::vector<std::size_t>& which) {
     std::size_t next = 0;
@@ -43,7 +42,6 @@ class BatchOf {
     own.with = configuration(described.info, points, point);
     own.out.channels = static_cast<int>(Of<double>::outputs.size());
     own.out.samples = static_cast<int>(experiment.time.size());
-    own.out.value.resize(Of<double>::outputs.size() * experiment.time.size());
     own.out.attempts = own.out.rejected = own.out.events = 0;
     guarded(own, [&] {
       own.system = assemble<Of<double>, double>(described, own.with.values, own.with);
@@ -52,7 +50,7 @@ class BatchOf {
       const auto* velocity = points.velocity + point * static_cast<std::size_t>(described.info.dof);
       std::copy_n(position, described.info.dof, own.simulation->y.at.position.begin());
       std::copy_n(velocity, described.info.dof, own.simulation->y.at.velocity.begin());
-      own.recorder.emplace(own.system, experiment, own.out, 0, 0, false);
+      own.recorder.emplace(own.system, experiment, own.out, sink.rows(point), 0, 0, false);
       own.alike = assemble_alike<Of>(described, own.with);
       own.recorder->write_together(own.alike);
       if (own.simulation->inputs().remembers) {  // its loop reads the past, which lanes do not keep
@@ -112,7 +110,7 @@ class BatchOf {
     }
   }
   void finish(Lane& own, const std::string& message) {
-    done(own.point, own.out, message);
+    sink.done(own.point, message);
     own.simulation.reset();
     own.planned.reset();
   }
@@ -120,7 +118,7 @@ class BatchOf {
   const Description& described;
   const integrate::Experiment& experiment;
   const integrate::Settings& settings;
-  const PointDone& done;
+  PointSink& sink;
   integrate::Lockstep<Of> lockstep;
   std::array<Lane, Lanes::count> lane;
   Configuration effects;  ///< of every point

@@ -80,7 +80,7 @@ class Model {
   /// Simulates `experiment` at the points `which`, whose flags are all the same.
   virtual void simulate_points(const Points& points, const std::vector<std::size_t>& which,
                                const integrate::Experiment& experiment, const integrate::Settings& settings,
-                               const PointDone& done) const = 0;
+                               PointSink& sink) const = 0;
   /// The equation of motion along a measured motion with the inputs of `experiment`, at its samples. Throws
   /// ParameterError for a system without one.
   virtual integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,

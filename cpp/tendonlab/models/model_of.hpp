@@ -44,22 +44,25 @@ class ModelOf final : public Model {
   }
   void simulate_points(const Points& points, const std::vector<std::size_t>& which,
                        const integrate::Experiment& experiment, const integrate::Settings& settings,
-                       const PointDone& done) const override {
+                       PointSink& sink) const override {
     require_matching(experiment, {});
     if constexpr (Of<double>::sampled) {
       for (const std::size_t point : which) {
         const Configuration with = configuration(info(), points, point);
-        integrate::Trajectory run;
+        const auto rows = sink.rows(point);
         std::string message;
         try {
-          run = simulate(with, experiment, {}, settings);
+          auto run = simulate(with, experiment, {}, settings);
+          const auto from = run.rows();
+          for (std::size_t c = 0; c < rows.size(); ++c)
+            if (rows[c]) std::copy_n(from[c], run.samples, rows[c]);
         } catch (const NumericalError& error) {
           message = error.what();
         }
-        done(point, run, message);
+        sink.done(point, message);
       }
     } else {
-      systems::BatchOf<Of>(description, experiment, settings, done).run(points, which);
+      systems::BatchOf<Of>(description, experiment, settings, sink).run(points, which);
     }
   }
   integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
@@ -119,11 +122,11 @@ class ModelOrGrown final : public Model {
   }
   void simulate_points(const Points& points, const std::vector<std::size_t>& which,
                        const integrate::Experiment& experiment, const integrate::Settings& settings,
-                       const PointDone& done) const override {
+                       PointSink& sink) const override {
     if (which.empty()) return;
     const bool grows = points.active[which.front() * info().effects.size() + switching] != 0;
     return (grows ? static_cast<const Model&>(*grown) : usual)
-        .simulate_points(points, which, experiment, settings, done);
+        .simulate_points(points, which, experiment, settings, sink);
   }
   integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
                              const integrate::MeasuredMotion& motion) const override {

@@ -1,7 +1,6 @@
 #pragma once
 // The points of a sweep: many configurations of one system.
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +15,13 @@ struct Points {
   const double* position;      ///< [point][degree of freedom]
   const double* velocity;      ///< [point][degree of freedom]
 };
-/// Gets each point as soon as its simulation ends: its number, the outputs, and why it failed (empty: it did not).
-using PointDone = std::function<void(std::size_t, const integrate::Trajectory&, const std::string&)>;
+/// Where the outputs of points go.
+class PointSink {
+ public:
+  virtual ~PointSink() = default;
+  /// A row for the samples of each output, null where nobody wants them. Asked for when the point begins.
+  virtual integrate::Trajectory::Rows rows(std::size_t point) = 0;
+  /// The point has ended; `message` says why it failed, or is empty.
+  virtual void done(std::size_t point, const std::string& message) = 0;
+};
 }  // namespace tendonlab
