@@ -94,7 +94,7 @@ def test_a_diagnosis_that_fails_counts_as_a_miss(pendulum: Path) -> None:
     found = tl.rehearse(pendulum, diagnose=fails, **{**FEW, "repeats_per_size": 1})
     assert found["load:offset"].missed == {"failed": 2}
     assert set(found.cases["message"]) == {"NumericalError: no convergence"}
-    assert "the diagnosis failed" in found.sentences[0]
+    assert "The diagnosis failed in 2 of 2 rigs" in found.sentences[0]
 
 
 @pytest.mark.parametrize(

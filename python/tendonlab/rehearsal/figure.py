@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tendonlab.rehearsal.curve import TARGET, fit_curve
-from tendonlab.rehearsal.words import amount_words
+from tendonlab.rehearsal.words import amount_words, parameter_title
 from tendonlab.report.figures import Picture
 from tendonlab.report.numbers import number
 from tendonlab.report.plot.style import COLOURS, FIGURE, INK, MUTED, new_axes, tidy
@@ -37,7 +37,12 @@ def detection_curve(entry: EffectRehearsal, ax: Axes | None = None) -> Axes:
         ax.set_xticks([], minor=True)
     ax.axhline(TARGET, color=MUTED, lw=0.8, ls=(0, (4, 2)))
     tidy(ax)
-    ax.set(ylim=(-0.03, 1.03), xlabel="Gap after tuning, over the noise floor", ylabel="Share found")
+    below = f"Gap after tuning over the noise floor; below: {parameter_title(entry)}"
+    ax.set(
+        ylim=(-0.03, 1.03),
+        xlabel=below,
+        ylabel="Share found",
+    )
     ax.set_yticks([0.0, 0.5, TARGET, 1.0], ["0", "0.5", "0.9", "1"])
     return ax
 

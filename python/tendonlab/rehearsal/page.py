@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from tendonlab.rehearsal.result import Rehearsal
 
 
+NEAR = 2.0  # gap over noise
+
+
 def page(of: Rehearsal) -> str:
     """The text of rehearsal.html: everything inline, all text escaped."""
     from jinja2 import ChoiceLoader, PackageLoader
@@ -51,13 +54,13 @@ def page(of: Rehearsal) -> str:
 
 
 def headline(of: Rehearsal) -> str:
-    """How many effects would be found at a gap of two noise floors or less."""
-    within = [e for e in of.effects if e.threshold is not None and e.threshold.kind != "above"]
-    near = [e for e in within if e.threshold is not None and e.threshold.size <= 2.0]
-    total = len(of.effects)
+    """How many effects would be found where they leave twice the noise floor or less, and at any size."""
+    kinds = [e.threshold for e in of.effects if e.threshold is not None and e.threshold.kind != "above"]
+    near = [threshold for threshold in kinds if threshold.size <= NEAR]
+    further = f"; {len(kinds)} are found at some size that was tried" if len(kinds) > len(near) else ""
     return (
-        f"{len(near)} of {total} effects are found 9 times in 10 once they leave two noise floors after tuning, "
-        f"{len(within)} at some size that was tried."
+        f"{len(near)} of {len(of.effects)} effects are found 9 times in 10 where they leave a gap of twice the noise "
+        f"floor or less{further}."
     )
 
 

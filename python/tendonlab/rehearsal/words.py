@@ -17,9 +17,10 @@ ANSWERS = {
     "nothing": "nothing, or wrong parameters",
     "unknown": "an unknown effect",
     "data_fault": "a fault of the logs",
-    "failed": "no answer: the diagnosis failed",
+    "failed": "no answer, because the diagnosis failed",
 }
 MOST_NAMED = 2  # wrong answers that a sentence names
+MOST_ROOM = 2.5  # of the largest size tried: below, no other size can be asked for
 OWN_LAWS = (
     "The simulated rigs contain the library's own laws, the same as the diagnosis fits. On a real rig an effect has "
     "another form: expect to find it a little later than here."
@@ -136,8 +137,12 @@ def _found_words(entry: EffectRehearsal) -> str:
     gap = _times(entry.threshold.size)
     if entry.threshold.kind == "above":
         last = entry.sizes[-1]
-        found = f"there it was found in {last.found} of {last.tried} rigs"
-        return f"found 9 times in 10 only at {'less' if entry.falls else 'more'} than {at} ({gap}); {found}"
+        found = f"where it was found in {last.found} of {last.tried} rigs"
+        most = f"; no plausible size leaves more than {_times(entry.largest_gap)}"
+        if entry.largest_gap >= MOST_ROOM * entry.threshold.size:
+            most = ""
+        way = "down" if entry.falls else "up"
+        return f"not found 9 times in 10 at any size tried, {way} to {at} ({gap}), {found}{most}"
     if entry.threshold.kind == "below":
         return f"found 9 times in 10 already at {at} ({gap}), the smallest size tried{_at_most(entry)}"
     return f"found 9 times in 10 from {at} on{' down' * entry.falls} ({gap}{_interval(entry)})"
@@ -171,8 +176,12 @@ def _from(entry: EffectRehearsal, low: float) -> str:
 
 
 def _missed_words(entry: EffectRehearsal, kind: str) -> str:
-    if not entry.missed:
-        return ""
-    total = sum(entry.missed.values())
-    named = missed_words(entry.missed, kind, most=MOST_NAMED)
-    return f"In {total} of {entry.tried} rigs it was missed and taken for {named}"
+    missed = {answer: count for answer, count in entry.missed.items() if answer != "failed"}
+    failed = entry.missed.get("failed", 0)
+    words = []
+    if missed:
+        named = missed_words(missed, kind, most=MOST_NAMED)
+        words.append(f"it was missed in {sum(missed.values())} of {entry.tried} rigs and taken for {named}")
+    if failed:
+        words.append(f"the diagnosis failed in {failed} of {entry.tried} rigs")
+    return capital("; ".join(words))
