@@ -86,19 +86,41 @@ def test_a_prior_and_data_that_say_as_much_halve_the_variance() -> None:
     assert found.sd[0] == pytest.approx(2.0 * 2000**-0.5, rel=0.1)
 
 
-@pytest.mark.parametrize(("num", "clusters"), [(3, 30), (6, 6)])
-def test_with_four_experiments_or_more_each_is_a_cluster(num: int, clusters: int) -> None:
-    """A residual that stays throughout an experiment is one measurement where experiments are the clusters: then the sd
-    is the scatter of their means, with Student's t for so few. With three, blocks are the clusters."""
-    levels = np.random.default_rng(0).standard_normal(num)
-    levels = (levels - levels.mean()) / levels.std()
+def levels_of_experiments(levels: np.ndarray) -> tuple[float, float]:
+    """Sd and half interval of a constant, from experiments of ten blocks whose residuals stay throughout."""
     parts = [np.arange(100) // 10 == k for k in range(10)]
-    runs = [(np.full(100, 9.0 * level), np.ones((100, 1)), parts) for level in levels]
-    found = uncertainty(runs, [free("offset")], np.zeros(1), at_bound=[False], informed=[True])
-    expected = 9.0 / np.sqrt(clusters) * np.sqrt(clusters / (clusters - 1))
-    assert found.sd[0] == pytest.approx(2.0 * expected)
-    half = 0.5 * (found.upper[0] - found.lower[0])
-    assert half == pytest.approx(stats.t.ppf(0.975, clusters - 1) * found.sd[0])
+    runs = [(np.full(100, level), np.ones((100, 1)), parts) for level in levels]
+    found = uncertainty(runs, [MEAN], np.zeros(1), at_bound=[False], informed=[True])
+    return found.sd[0], 0.5 * (found.upper[0] - found.lower[0])
+
+
+@pytest.mark.parametrize("num", [3, 6])
+def test_from_four_experiments_on_their_scatter_counts(num: int) -> None:
+    """A residual that stays throughout an experiment is one measurement. The variance of a mean is that over all blocks
+    with three experiments; with six it is pooled with that over the experiments, as if two more agreed with blocks."""
+    levels = np.random.default_rng(0).standard_normal(num)
+    levels *= 9.0 / np.sqrt(np.mean(levels**2))
+    blocks, experiments = 81.0 / (10 * num - 1), 81.0 / (num - 1)
+    pooled = (2 * blocks + (num - 1) * experiments) / (num + 1)
+    variance, freedom = (pooled, num + 1) if num >= 4 else (blocks, 10 * num - 1)
+    sd, half = levels_of_experiments(levels)
+    assert sd == pytest.approx(np.sqrt(variance))
+    assert half == pytest.approx(stats.t.ppf(0.975, freedom) * sd)
+
+
+@pytest.mark.parametrize(("scatter", "least", "widest"), [(0.0, 0.96, 1.4), (1.0, 0.93, 1.4)])
+def test_intervals_of_four_experiments_hold_the_truth(scatter: float, least: float, widest: float) -> None:
+    """`scatter`: variance that an experiment adds to that of its ten blocks' mean."""
+    draw, held, halves = np.random.default_rng(3), [], []
+    for _ in range(400):
+        blocks = draw.standard_normal((4, 10)) + np.sqrt(0.1 * scatter) * draw.standard_normal((4, 1))
+        parts = [np.arange(10) == k for k in range(10)]
+        runs = [(one - blocks.mean(), np.ones((10, 1)), parts) for one in blocks]
+        found = uncertainty(runs, [MEAN], np.zeros(1), at_bound=[False], informed=[True])
+        halves.append(0.5 * (found.upper[0] - found.lower[0]))
+        held.append(abs(blocks.mean()) < halves[-1])
+    assert np.mean(held) > least
+    assert np.mean(halves) / (1.96 * np.sqrt(0.1 * (1.0 + scatter) / 4)) < widest
 
 
 def test_informed_is_what_narrows_its_prior() -> None:

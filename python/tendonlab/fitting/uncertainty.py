@@ -11,6 +11,7 @@ from scipy import stats
 from tendonlab._core import Free
 
 FEWEST_EXPERIMENTS = 4  # with fewer, contiguous blocks of 2 s stand for them
+ALIKE = 2.0  # so many experiments speak for the belief that experiments scatter no more than blocks
 NOTHING = 1e-8  # of a prior's variance: data that narrow it by less say nothing
 
 Marginal = tuple[np.ndarray, np.ndarray, Sequence[np.ndarray]]  # residual, jacobian, rows of each block as masks
@@ -48,10 +49,10 @@ def uncertainty(
 
     Covariance H^-1 (B + P) H^-1: H is the curvature with priors, P the priors' part of it, B the sum of g g' over
     clusters with g the score of a cluster. Clusters are contiguous blocks of at least 2 s, and with four experiments
-    or more also the experiments; the larger sd counts, and none is below that of independent noise of the residuals'
-    size. Intervals use Student's t with the number of clusters. A parameter at a bound counts as fixed for the others;
-    its own sd is what it would be without the bound, where its interval ends. One that is not informed is what its
-    prior says."""
+    or more also the experiments, whose variance is pooled with that of blocks: few experiments tell their own scatter
+    badly. The larger sd counts, and none is below that of independent noise of the residuals' size. Intervals use
+    Student's t with the number of clusters. A parameter at a bound counts as fixed for the others; its own sd is what
+    it would be without the bound, where its interval ends. One that is not informed is what its prior says."""
     known = np.asarray(informed, dtype=bool)
     inside = known & ~np.asarray(at_bound, dtype=bool)
     precision = np.array([0.0 if np.isinf(f.sd) else f.sd**-2.0 for f in free])
@@ -114,9 +115,13 @@ def _sandwich(bread: np.ndarray, prior: np.ndarray, scores: Sequence[np.ndarray]
 
 def _spread(covariances: Sequence[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:
     """Sd and half width of the 95 % interval of each coordinate: the largest that any of the covariances gives."""
-    sd = [np.sqrt(np.maximum(np.diag(covariance), 0.0)) for covariance, _ in covariances]
-    half = [one * stats.t.ppf(0.975, max(1.0, c - 1)) for one, (_, c) in zip(sd, covariances, strict=True)]
-    return np.max(sd, axis=0), np.max(half, axis=0)
+    variance = [np.maximum(np.diag(covariance), 0.0) for covariance, _ in covariances]
+    freedom = [max(1.0, clusters - 1) for _, clusters in covariances]
+    if len(covariances) == 3:
+        variance[2] = (ALIKE * variance[1] + freedom[2] * variance[2]) / (ALIKE + freedom[2])
+        freedom[2] += ALIKE
+    sd = np.sqrt(variance)
+    return np.max(sd, axis=0), np.max(sd * stats.t.ppf(0.975, freedom)[:, None], axis=0)
 
 
 def _intervals(
