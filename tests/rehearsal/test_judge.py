@@ -4,7 +4,9 @@ import pytest
 
 from rehearsal.stubs import says
 from tendonlab.rehearsal.judge import judged
-from tendonlab.rehearsal.tally import false_effects, nothing_withheld, reliability
+from tendonlab.rehearsal.sizes import Ladder
+from tendonlab.rehearsal.tally import effect_rehearsal, false_effects, nothing_withheld, reliability
+from tendonlab.rehearsal.words import effect_words
 
 TRUTH = "load:offset"
 
@@ -50,3 +52,18 @@ def test_reliability_leaves_out_what_is_too_small_to_be_seen() -> None:
     assert on_truth == pytest.approx(0.45)  # of 0.9 and 0
     (only,) = bins
     assert (only.stated, only.mean, only.right.hits, only.right.num) == ((0.8, 0.95), 0.9, 1, 2)
+
+
+def test_the_sentence_names_ties_and_wrong_answers() -> None:
+    ladder = Ladder(TRUTH, "load_offset", "N*m", (0.001, 0.01), (0.5, 5.0), {})
+    twin = says("actuation:offset", group=("actuation:offset", TRUTH))
+    answers = [(0.5, says(None)), (0.5, says("actuation:delay")), *[(5.0, twin)] * 3, *[(5.0, says(TRUTH))] * 9]
+    entry = effect_rehearsal(ladder, [{"effect": TRUTH, "gap": gap, **judged(why, TRUTH)} for gap, why in answers])
+    assert [(size.gap, size.amount, size.found, size.tried) for size in entry.sizes] == [
+        (0.5, pytest.approx(0.001), 0, 2),
+        (5.0, pytest.approx(0.01), 12, 12),
+    ]
+    words = effect_words(entry, "rigid_joint")
+    assert words.startswith("Constant disturbance on the load: found 9 times in 10 from offset")
+    assert "In 3 of 14 rigs the data could not separate it from constant offset of the actuator (3)." in words
+    assert "It was missed in 2 of 14 rigs and taken for nothing, or wrong parameters (1)" in words

@@ -101,3 +101,23 @@ def test_a_planned_rig_follows_its_controller(planned: Path) -> None:
     assert set(data.columns) == {"reference_angle", "joint_angle", "motor_torque"}
     assert float((data["joint_angle"] - data["reference_angle"]).std()) < 0.1
     assert logs["b"].data["joint_angle"].iloc[0] == pytest.approx(0.2, abs=0.01)  # it starts where the reference does
+
+
+def test_with_repeats_the_noise_is_what_they_do_not_repeat(pendulum: Path) -> None:
+    """Simulated repeats of a rig whose sensor is noisier than stated show that noise, and its friction's scatter."""
+    rig = tl.load(pendulum)
+    noise = simulated_rig(rig).noise
+    assert (noise.repeated, noise.scatter) == (False, 0.008)
+    random, first = np.random.default_rng(4), rig.experiments[0]
+    system = rig.system()
+    repeats = []
+    for k in range(4):
+        own = system.with_parameters({"coulomb": 0.05 * float(np.exp(0.1 * random.normal()))})
+        angle = own.simulate(first)["joint_angle"] + 4e-3 * random.normal(size=len(first.data))
+        data = first.data.assign(joint_angle=angle)
+        repeats.append(replace(first, name=f"repeat-{k}", repeat="A", data=data))
+    noise = simulated_rig(replace(rig, experiments=tuple(repeats))).noise
+    assert noise.repeated
+    assert 0.02 < noise.scatter < 0.2  # four runs tell an sd to a factor of two or so
+    read = noise.sensors[0].read(np.zeros(5000), random)
+    assert read.std() == pytest.approx(4e-3, rel=0.15)

@@ -20,7 +20,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("dataset", type=Path, metavar="DATASET", help="folder with dataset.toml")
     parser.add_argument("--plan", type=Path, metavar="FILE.toml", help="experiments that are not made yet")
     parser.add_argument("--effects", nargs="+", metavar="EFFECT", help="only these; default: all that may be missing")
-    sizes = "gaps over noise that an effect leaves; default: 0.2 0.5 1 2 5"
+    sizes = "gaps over noise that an effect leaves; default: 0.1 0.2 0.5 1 2 5"
     parser.add_argument("--sizes", nargs="+", type=float, metavar="GAP", help=sizes)
     parser.add_argument("--repeats-per-size", type=int, default=6, metavar="N", help="rigs per size; default: 6")
     parser.add_argument("--minutes", type=float, default=15.0, metavar="M", help="time for it; default: 15")

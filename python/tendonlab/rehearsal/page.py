@@ -73,10 +73,18 @@ def sizes_table(of: Rehearsal) -> Table:
             Cell(gap_words(e)),
             Cell(f"{sum(s.found for s in e.sizes)} of {e.tried}"),
             Cell(missed_words(e.missed, of.system) or "–"),
+            Cell(missed_words(e.tied, of.system) or "–"),
         ]
         for e in of.effects
     ]
-    columns = ("Effect", "Found 9 times in 10 from", "as gap over noise (95 %)", "Found, all sizes", "Taken for")
+    columns = (
+        "Effect",
+        "Found 9 times in 10 from",
+        "as gap over noise (95 %)",
+        "Found, all sizes",
+        "Taken for",
+        "Tied with",
+    )
     return Table(columns=columns, rows=rows, right=frozenset({1, 2, 3}), wraps=True)
 
 

@@ -29,7 +29,7 @@ from tendonlab.rehearsal.tally import effect_rehearsal, false_effects, nothing_w
 from tendonlab.rehearsal.words import OWN_LAWS
 from tendonlab.seed import checked
 
-SIZES = (0.2, 0.5, 1.0, 2.0, 5.0)  # gap over noise
+SIZES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)  # gap over noise
 COLUMNS = (
     "case", "effect", "gap", "repeat", "outcome", "verdict", "named", "on_truth", "stated", "right", "seconds",
     "message",

@@ -7,6 +7,7 @@ import signal
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -99,6 +100,9 @@ def _workers(work: Work, jobs: int) -> Iterator[Callable[[Iterable[RehearsalCase
     pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=_begin, initargs=(work,))
     try:
         yield lambda cases: _as_done(pool, jobs, cases)
+    except BrokenProcessPool as error:
+        advice = "with `out`, the same call goes on from there; fewer `jobs` need less memory"
+        raise NumericalError(f"one of {jobs} processes died, perhaps for want of memory; {advice}") from error
     finally:
         pool.shutdown(cancel_futures=True)
 

@@ -63,7 +63,8 @@ def noise_of_rig(rig: Dataset, case: Case) -> Noise:
         signal = rig.signals[case.outputs[c]]
         resolution = signal.resolution or 0.0
         if floor is not None and repeated:
-            sensors.append(Sensor(signal.name, floor.sd[c], tuple(floor.ar[c]), resolution))
+            own = _without_rounding(floor.sd[c], floor.ar[c], resolution)
+            sensors.append(Sensor(signal.name, own, tuple(floor.ar[c]), resolution))
         else:
             sensors.append(Sensor(signal.name, _white(signal, case, c), (), resolution))
     return Noise(tuple(sensors), floor.tau if floor is not None and repeated else RUN_TO_RUN, repeated)
@@ -97,6 +98,15 @@ def _floor(case: Case) -> Floor:
         for i in range(len(case.experiments))
     ]
     return estimate(case, seen, case.train)
+
+
+def _without_rounding(innovation: float, memory: list[float], resolution: float) -> float:
+    """The sd that drives noise with memory, before rounding: what repeats differ by holds that of the rounding."""
+    from scipy.signal import lfilter
+
+    response = lfilter([1.0], [1.0, *(-a for a in memory)], np.eye(1, BURN_IN)[0])
+    total = innovation**2 * float(response @ response)
+    return innovation * float(np.sqrt(max(0.0, 1.0 - resolution**2 / 12.0 / total)))
 
 
 def _white(signal: SignalSpec, case: Case, c: int) -> float:

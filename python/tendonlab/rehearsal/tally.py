@@ -35,7 +35,8 @@ class EffectRehearsal:
     the largest size that was simulated the effect leaves `largest_gap`. `sizes`: counts. `threshold`: gap over noise
     from which it is found 9 times in 10, None where nothing was tried. `amounts`: the same bounds in the size
     parameter: at the threshold, and its 95 % interval. `missed`: what it was called where it was not found, with
-    counts, most frequent first; `tied`: in how many of those found it was one of a group."""
+    counts, most frequent first; `tied`: effects that were named
+    in its place where the data could not tell them apart, which counts as found, with counts."""
 
     effect: str
     parameter: str
@@ -47,7 +48,7 @@ class EffectRehearsal:
     threshold: Threshold | None
     amounts: tuple[float | None, float | None, float | None]
     missed: Mapping[str, int]
-    tied: int
+    tied: Mapping[str, int]
 
     @property
     def tried(self) -> int:
@@ -91,7 +92,7 @@ def effect_rehearsal(ladder: Ladder, rows: Iterable[Row]) -> EffectRehearsal:
         threshold=threshold,
         amounts=_amounts(ladder, threshold),
         missed=_missed(own),
-        tied=sum(row["outcome"] == "tied" for row in own),
+        tied=_tied(own),
     )
 
 
@@ -140,6 +141,11 @@ def _missed(rows: Iterable[Row]) -> dict[str, int]:
     """Answers in place of the truth. Where several effects were named, the first one counts."""
     answers = (row["named"][0] if row["outcome"] == "other" else row["outcome"] for row in rows)
     return dict(Counter(answer for answer in answers if answer not in HITS).most_common())
+
+
+def _tied(rows: Iterable[Row]) -> dict[str, int]:
+    """Effects that were named in place of the truth, from a group that contains it."""
+    return dict(Counter(name for row in rows if row["outcome"] == "tied" for name in row["named"][:1]).most_common())
 
 
 def _amounts(ladder: Ladder, threshold: Threshold | None) -> tuple[float | None, float | None, float | None]:

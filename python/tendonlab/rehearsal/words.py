@@ -33,7 +33,13 @@ def effect_words(entry: EffectRehearsal, kind: str) -> str:
     if entry.threshold is None:
         return f"{title}: {_not_tried(entry)}."
     after = _missed_words(entry, kind)
-    return f"{title}: {_found_words(entry)}." + (f" {after}." if after else "")
+    ties = missed_words(entry.tied, kind, most=MOST_NAMED)
+    tied = (
+        f" In {sum(entry.tied.values())} of {entry.tried} rigs the data could not separate it from {ties}."
+        if ties
+        else ""
+    )
+    return f"{title}: {_found_words(entry)}.{tied}" + (f" {after}." if after else "")
 
 
 def amount_words(entry: EffectRehearsal, amount: float | None) -> str:
