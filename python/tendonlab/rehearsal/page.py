@@ -17,7 +17,7 @@ from tendonlab.rehearsal.words import (
 )
 from tendonlab.report.blocks import Cell, Table
 from tendonlab.report.document import environment
-from tendonlab.report.numbers import number, percent, percent_span
+from tendonlab.report.numbers import number, percent, percent_span, probability
 from tendonlab.report.words import capital, phrase
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def reliability_table(of: Rehearsal) -> Table:
         [
             Cell(f"{number(one.stated[0], 2)} to {number(one.stated[1], 2)}"),
             Cell(str(one.right.num)),
-            Cell(number(one.mean, 2)),
+            Cell(probability(one.mean)),
             Cell(percent(one.right.hits / one.right.num)),
             Cell(percent_span(one.right.ci95)),
         ]

@@ -65,11 +65,12 @@ def gap_words(entry: EffectRehearsal) -> str:
     if entry.threshold is None:
         return "–"
     sign = {"within": "", "above": "> ", "below": "≤ "}[entry.threshold.kind]
+    best = f"{sign}{number(entry.threshold.size, 2)}"
+    if sign:
+        return best
     low, high = entry.threshold.ci95
-    if sign or (low is None and high is None):
-        return f"{sign}{number(entry.threshold.size, 2)}"
-    bounds = f"{number(low, 2) if low else '?'} to {number(high, 2) if high else '?'}"
-    return f"{number(entry.threshold.size, 2)} ({bounds})"
+    first, last = (number(size.gap, 2) for size in (entry.sizes[0], entry.sizes[-1]))
+    return f"{best} ({number(low, 2) if low else f'< {first}'} to {number(high, 2) if high else f'> {last}'})"
 
 
 def answer_words(answer: str, kind: str) -> str:
