@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tendonlab as tl
 from tendonlab import _core
+from tendonlab.cli.demo import bundled
+from tendonlab.fitting.case import make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter
@@ -105,3 +108,14 @@ def test_shares_are_those_of_each_output_alone(nominal: Fitted) -> None:
     three = replace(nominal, runs=(run, run), levels=np.array([2.0, 3.0, 4.0]), known=np.array([0.1, 9.0, 0.1]))
     assert three.own_shares == pytest.approx([0.1, 1.0, 1.0], rel=0.25)
     assert three.own_levels == pytest.approx([2.0, 9.0, 4.0], rel=0.1)  # of the second more noise is known
+
+
+def test_records_of_a_single_block_are_halved_in_time() -> None:
+    """Whatever the length of a record, both halves hold samples of every experiment, and no sample is in both."""
+    rig = tl.load(bundled())
+    short = tuple(replace(e, data=e.data.iloc[:500]) for e in rig.experiments)
+    case = make_case(replace(rig, experiments=short))
+    for odd, even in zip(case.on_half(odd=True).prepared, case.on_half(odd=False).prepared, strict=True):
+        first, second = np.isfinite(odd.measured[0]), np.isfinite(even.measured[0])
+        assert first.sum() == second.sum() > 0
+        assert not (first & second).any()

@@ -58,10 +58,14 @@ class Case:
         return replace(self, experiments=tuple(chosen))
 
     def on_half(self, *, odd: bool) -> Case:
-        """The same case with every other block of 2 s of each experiment measured, the odd or the even ones."""
+        """The same case with every other block of 2 s of each experiment measured, the odd or the even ones. Of an
+        experiment that is a single block, the first or the second half."""
 
         def half(i: int, ready: Prepared) -> Prepared:
-            kept = (blocks_of(self.experiments[i].time) + i) % 2 == odd
+            blocks = blocks_of(self.experiments[i].time)
+            if not blocks.any():
+                blocks = 2 * np.arange(len(blocks)) // len(blocks)
+            kept = (blocks + i) % 2 == odd
             return replace(ready, measured=np.where(kept, ready.measured, np.nan))
 
         return replace(self, prepared=tuple(half(i, ready) for i, ready in enumerate(self.prepared)))
