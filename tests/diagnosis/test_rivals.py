@@ -90,7 +90,7 @@ def test_effects_that_are_nearly_as_probable_as_the_accepted_one_are_named_toget
         contest(ASYMMETRY, STRIBECK, asymmetry=0.9, delay=0.05, none=0.05),
         contest("", STRIBECK, ASYMMETRY, delay=0.4, none=0.6),
     ]
-    levels = Levels(nominal=9.0, tuned=4.0, refitted=4.0, explained=0.9, repeated=True)
+    levels = Levels(nominal=9.0, tuned=4.0, refitted=4.0, explained=0.9, left=1.3, repeated=True)
     assert decide(rounds, (STRIBECK, ASYMMETRY), levels).indistinguishable == [[STRIBECK, DELAY]]
 
 

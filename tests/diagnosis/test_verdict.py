@@ -12,7 +12,7 @@ from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, dec
 
 
 def nothing_selected(*, refitted: float, repeated: bool = False, tuned: float = 1.0) -> Verdict:
-    levels = Levels(nominal=1e4, tuned=tuned, refitted=refitted, explained=None, repeated=repeated)
+    levels = Levels(nominal=1e4, tuned=tuned, refitted=refitted, explained=None, left=refitted, repeated=repeated)
     return decide((), (), levels)
 
 
@@ -31,7 +31,12 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
 def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tuned: float, refitted: float) -> None:
     """A floor that is assumed, or from few repeats, may be too low: what tuning does not shrink is no parameter."""
     levels = Levels(
-        nominal=1.45 if not repeated else 1.25, tuned=tuned, refitted=refitted, explained=None, repeated=repeated
+        nominal=1.45 if not repeated else 1.25,
+        tuned=tuned,
+        refitted=refitted,
+        explained=None,
+        left=refitted,
+        repeated=repeated,
     )
     found = decide((), (), levels)
     assert found.verdict == "no_gap"
@@ -42,7 +47,7 @@ def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tune
 
 @pytest.mark.parametrize("repeated", [False, True])
 def test_a_simulator_without_any_error_has_no_gap(repeated: bool) -> None:
-    levels = Levels(nominal=0.0, tuned=0.0, refitted=0.0, explained=None, repeated=repeated)
+    levels = Levels(nominal=0.0, tuned=0.0, refitted=0.0, explained=None, left=0.0, repeated=repeated)
     assert decide((), (), levels).verdict == "no_gap"
 
 
@@ -100,11 +105,12 @@ def selected(
     nominal: float = 50.0,
     tuned: float = 20.0,
     explained: float | None = 0.9,
+    left: float = 9.0,
     none: float = 0.01,
     repeated: bool = True,
 ) -> Verdict:
     """The verdict where one effect was selected."""
-    levels = Levels(nominal=nominal, tuned=tuned, refitted=tuned, explained=explained, repeated=repeated)
+    levels = Levels(nominal=nominal, tuned=tuned, refitted=tuned, explained=explained, left=left, repeated=repeated)
     return decide((contest((), "a", a=1.0 - none, none=none),), ("a",), levels)
 
 
@@ -122,6 +128,17 @@ def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess_o
     assert sum(found.probability.values()) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("explained", [None, 0.1])
+@pytest.mark.parametrize(("left", "verdict"), [(1.0, "effect"), (1.1, "effect"), (1.3, "unknown_effect")])
+def test_nothing_is_unknown_where_held_out_experiments_end_at_the_floor(
+    explained: float | None, left: float, verdict: str
+) -> None:
+    """Short held-out experiments may lie at the floor with the effect and without it: nothing is left to explain."""
+    found = selected(explained=explained, left=left)
+    assert found.verdict == verdict
+    assert found.probability[verdict] > 0.5
+
+
 def test_verdict_probabilities_follow_the_share_that_is_explained() -> None:
     """Far above and far below three quarters nearly all of the probability is on one side."""
     assert selected(explained=1.0).probability["effect"] > 0.95
@@ -132,10 +149,10 @@ def test_verdict_probabilities_follow_the_share_that_is_explained() -> None:
 
 def test_a_simulator_at_the_floor_has_no_gap() -> None:
     for nominal, tuned in ((1.1, 1.0), (1.2, 1.18)):  # below 1.15, or nothing to gain by tuning
-        levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, repeated=True)
+        levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, left=1.0, repeated=True)
         found = decide((), (), levels)
         assert found.verdict == "no_gap"
         assert max(found.probability, key=lambda name: found.probability[name]) == "no_gap"
     for nominal, tuned in ((1.2, 1.1), (1.4, 1.35)):
-        levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, repeated=True)
+        levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, left=1.0, repeated=True)
         assert decide((), (), levels).verdict != "no_gap"

@@ -95,6 +95,7 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
         tuned=search.tuned.mean_square,
         refitted=heldout.level(stages["refitted"], floor),
         explained=heldout.explained(stages["refitted"], stages["with_effect"], floor) if search.selected else None,
+        left=heldout.level(stages["with_effect"], floor),
         repeated=floor.repeated,
     )
 

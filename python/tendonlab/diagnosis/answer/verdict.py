@@ -25,12 +25,14 @@ class Levels:
     `nominal`: at the untouched simulator, whitened, or plain where nothing repeats. `tuned`: whitened, of the refitted
     simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out experiments, which
     decides where nothing repeats. `explained`: share of the held-out excess that the selected effects remove, None
-    where there is none. `repeated`: whether the floor comes from repeats."""
+    where there is none. `left`: plain, of the simulator with them on held-out experiments. `repeated`: whether the
+    floor comes from repeats."""
 
     nominal: float
     tuned: float
     refitted: float
     explained: float | None
+    left: float
     repeated: bool
 
 
@@ -52,22 +54,23 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - MATTERS
     room = NEAR_FLOOR - levels.tuned if levels.repeated else min(SOFT, FAR - levels.refitted)
     at_floor = levels.nominal < NO_GAP or (gained < 0 < room and not selected)
-    explained = levels.explained or 0.0
     needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
+    # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
+    spare = max((levels.explained or 0.0) - needed, NO_GAP - levels.left)
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
         "no_gap": _step(SOFT if at_floor else NO_GAP - levels.nominal) * (1.0 if not selected else none),
         "parameters_only": _step(levels.nominal - NO_GAP) * _step(gained) * none * _step(room),
-        "effect": (1.0 - none) * (_step(explained - needed) if selected else 0.1),
-        "unknown_effect": (1.0 - none) * (_step(needed - explained) if selected else 0.5) + (0.0 if room > 0 else none),
+        "effect": (1.0 - none) * (_step(spare) if selected else 0.1),
+        "unknown_effect": (1.0 - none) * (_step(-spare) if selected else 0.5) + (0.0 if room > 0 else none),
     }
     if at_floor:
         verdict = "no_gap"
     elif not selected:
         verdict = "parameters_only" if room > 0 else "unknown_effect"
     else:
-        verdict = "effect" if levels.explained is not None and explained >= needed else "unknown_effect"
+        verdict = "effect" if spare >= 0 else "unknown_effect"
     weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)
     total = sum(weight.values())
     effects, sets = marginals(rounds)
