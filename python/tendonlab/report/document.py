@@ -93,7 +93,7 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
             (
                 share,
                 "of the excess error explained, as mean square over the floor",
-                "75 % are needed for “effect identified”, 60 % without repeats",
+                "“effect identified” needs 75 % (60 % without repeats), or an error at the floor",
             )
         )
     return facts
