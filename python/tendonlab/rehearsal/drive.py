@@ -9,12 +9,14 @@ import pandas as pd
 
 from tendonlab.arguments import JITTER
 from tendonlab.data import Dataset, Experiment
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.replay import choose_replay
-from tendonlab.simulation.prepare import is_held
 from tendonlab.simulation.records import Controller
 from tendonlab.simulation.signals import ROUNDING, white_noise_sd
+from tendonlab.simulation.system import System
 
 REFERENCE, FEEDFORWARD = "_logged_motion", "_logged_command"  # columns of a tracking loop; no signal has these names
+NEAR = 0.1  # of the sd of the motion: how far a rig may drift from the tracked motion when its command is played alone
 
 
 @dataclass(frozen=True)
@@ -33,14 +35,36 @@ class Drive:
         data, time = experiment.data, experiment.time
         path = _smooth_path(time, data[self.controller.measured].to_numpy(dtype=float))
         added = {REFERENCE: path, FEEDFORWARD: data[self.command].to_numpy(dtype=float)}
-        held = {**experiment.holds, FEEDFORWARD: experiment.holds.get(str(self.command), True)}
-        return replace(experiment, data=data.assign(**added), holds=held)
+        # Not held where a clock ticks: a tick that is a rounding error early would read the sample before.
+        held = self._holds(experiment) and self._clock(experiment) == 0
+        return replace(experiment, data=data.assign(**added), holds={**experiment.holds, FEEDFORWARD: held})
 
-    def commanded(self, experiment: Experiment, outputs: pd.DataFrame) -> np.ndarray | None:
-        """What the controller commanded at each sample, shape (n,); None where there is no controller."""
+    def driven(self, system: System, run: Experiment, tolerance: float) -> tuple[pd.DataFrame, np.ndarray | None]:
+        """The outputs of `system` in `run`, and the command that moved it, shape (n,); None where there is no loop.
+
+        What a tracking loop commands between samples is not logged. So the rig moves as the logged command alone moves
+        it: only then can a diagnosis explain the logs by the rig. A rig that would fall or drift away keeps the motion
+        in the loop."""
         if self.controller is None or self.command is None:
-            return None
-        return command_of(self.controller, experiment, outputs[self.controller.measured].to_numpy(dtype=float))
+            return system.simulate(run, tolerance=tolerance).outputs, None
+        loop = self.controller if not self.tracks else replace(self.controller, sample_time=self._clock(run))
+        looped = replace(system, controller=loop).simulate(run, tolerance=tolerance).outputs
+        command = command_of(loop, run, looped[loop.measured].to_numpy(dtype=float))
+        if not self.tracks:
+            return looped, command
+        alone = _played(system, replace(run, data=run.data.assign(**{self.command: command})), tolerance)
+        return (looped if alone is None or _drifts(alone, looped, loop.measured) else alone), command
+
+    def _clock(self, run: Experiment) -> float:
+        """The sampling interval of a tracking loop, s: that of the samples. 0, a loop in continuous time, where the
+        command was not held or the samples are uneven."""
+        ticks = np.linspace(run.time[0], run.time[-1], len(run.time))
+        step = float(ticks[1] - ticks[0])
+        even = float(np.max(np.abs(run.time - ticks))) <= JITTER * step
+        return step if even and self._holds(run) else 0.0
+
+    def _holds(self, run: Experiment) -> bool:
+        return run.holds.get(str(self.command), True)
 
 
 def drive_of(rig: Dataset) -> Drive:
@@ -54,7 +78,6 @@ def drive_of(rig: Dataset) -> Drive:
     replay = choose_replay(rig, rig.system()) if logged else None
     if replay is None or replay.kind != "injection" or command is None:
         return Drive(None, None)
-    held = info.command is not None and is_held(rig.experiments[0], info.command)
     loop = Controller(
         kind="pd",
         kp=replay.kp or 0.0,
@@ -62,7 +85,6 @@ def drive_of(rig: Dataset) -> Drive:
         measured=str(replay.output),
         reference=REFERENCE,
         disturbance=FEEDFORWARD,
-        sample_time=_step(rig) if held else 0.0,
     )
     return Drive(loop, command, tracks=True)
 
@@ -80,7 +102,7 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
     seen = CubicSpline(time, measured)
     step = controller.sample_time
     if step > 0:
-        now = time[0] + np.floor((time - time[0]) / step + 1e-6) * step  # the last tick of its clock
+        now = time[0] + np.floor((time - time[0]) / step + JITTER) * step  # the last tick of its clock
         before = np.maximum(now - step, time[0])
         change = weight * (reference(now) - reference(before)) - (seen(now) - seen(before))
         command = proportional * (reference(now) - seen(now)) + controller.kd / step * change
@@ -88,8 +110,18 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
         slope = weight * reference(time, 1) - seen(time, 1)
         command = proportional * (reference(time) - measured) + controller.kd * slope
     command = np.clip(command, -controller.limit, controller.limit)
-    added = 0.0 if controller.disturbance is None else data[controller.disturbance].to_numpy(dtype=float)
-    return np.asarray(command + added)
+    return np.asarray(command + _disturbance(controller, experiment, now if step > 0 else time))
+
+
+def _disturbance(controller: Controller, experiment: Experiment, at: np.ndarray) -> np.ndarray:
+    """What is added to the command of a controller at the instants `at`."""
+    if controller.disturbance is None:
+        return np.zeros(len(at))
+    time, values = experiment.time, experiment.data[controller.disturbance].to_numpy(dtype=float)
+    if not experiment.holds.get(controller.disturbance, True):
+        return np.asarray(np.interp(at, time, values))
+    near = JITTER * float(np.min(np.diff(time)))
+    return np.asarray(values[np.searchsorted(time, at + near, side="right") - 1])
 
 
 def _smooth_path(time: np.ndarray, logged: np.ndarray) -> np.ndarray:
@@ -104,9 +136,15 @@ def _smooth_path(time: np.ndarray, logged: np.ndarray) -> np.ndarray:
     return np.asarray(make(time[kept], logged[kept])(time))
 
 
-def _step(rig: Dataset) -> float:
-    """The sampling interval that all experiments share, s; 0 where there is none."""
-    first = rig.experiments[0]
-    step = first.duration / (len(first.data) - 1)
-    late = max(float(np.max(np.abs(e.time - e.time[0] - step * np.arange(len(e.data))))) for e in rig)
-    return step if late <= JITTER * step else 0.0
+def _played(system: System, run: Experiment, tolerance: float) -> pd.DataFrame | None:
+    """The outputs where the inputs alone drive the rig; None where it runs away."""
+    try:
+        return replace(system, controller=None).simulate(run, tolerance=tolerance).outputs
+    except NumericalError:
+        return None
+
+
+def _drifts(alone: pd.DataFrame, looped: pd.DataFrame, measured: str) -> bool:
+    """Whether the rig leaves the tracked motion where no loop holds it there."""
+    off = (alone[measured] - looped[measured]).to_numpy()
+    return not float(np.sqrt(np.mean(off**2))) <= NEAR * float(looped[measured].std())

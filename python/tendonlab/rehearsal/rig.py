@@ -16,7 +16,7 @@ from tendonlab.rehearsal.drive import Drive, drive_of
 from tendonlab.rehearsal.sensors import Noise, noise_of_rig, stated_noise
 from tendonlab.simulation.system import System
 
-TOLERANCE = 1e-6  # of a step of the simulated rigs
+TOLERANCE = 1e-8  # of a step of the simulated rigs
 Effects = Mapping[str, Mapping[str, float]]
 
 
@@ -66,13 +66,12 @@ class SimulatedRig:
 
     def _log(self, run: Experiment, system: System, random: np.random.Generator | None) -> Experiment:
         """`run` as `system` logs it; without noise where `random` is None."""
-        outputs = system.simulate(run, tolerance=TOLERANCE).outputs
+        outputs, command = self.drive.driven(system, run, TOLERANCE)
         logged = {}
         for sensor in self.noise.sensors:
             values = outputs[sensor.name].to_numpy()
             read = values if random is None else sensor.read(values, random)
             logged[sensor.name] = np.where(np.isfinite(self._pattern(run, sensor.name)), read, np.nan)
-        command = self.drive.commanded(run, outputs)
         if command is not None:
             logged[str(self.drive.command)] = command
         data = run.data.assign(**logged)
