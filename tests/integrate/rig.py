@@ -112,14 +112,15 @@ def run_many(
     *,
     kind: str = "smooth",
     tolerance: float = 1e-9,
+    outputs: Sequence[int] | None = None,
     **how: Any,
 ) -> np.ndarray:
-    """All outputs of several systems of one kind, (systems, outputs, samples), as the points of a sweep get them: steps
-    of eight are taken together. `how`: loop, position, velocity, as in `run`."""
+    """Outputs, all by default, of several systems of one kind, (systems, outputs, samples), as points of a sweep get
+    them: steps of eight are taken together. `how`: loop, position, velocity, as in `run`."""
     first = systems[0]
-    dof, num_outputs = first.info.dof, len(first.info.outputs)
+    dof, channels = first.info.dof, list(range(len(first.info.outputs)) if outputs is None else outputs)
     start = [np.tile(how.get(name) or [0.0] * dof, (len(systems), 1)) for name in ("position", "velocity")]
-    out = np.empty((len(systems), num_outputs, time.size))
+    out = np.empty((len(systems), len(channels), time.size))
     messages = _core.simulate_many(
         first.kind,
         np.array([s.values() for s in systems]),
@@ -127,7 +128,7 @@ def run_many(
         _experiment(first, time, inputs, kind=kind, **how),
         *start,
         _core.Settings(tolerance=tolerance),
-        list(range(num_outputs)),
+        channels,
         out,
     )
     assert messages == [""] * len(systems)

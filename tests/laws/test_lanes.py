@@ -46,6 +46,22 @@ def test_every_effect_in_lanes(kind: str, effect: str) -> None:
     assert_each_is_alone(scattered(with_effect(kind, effect), effect), T[:samples], inputs, kind=of.between)
 
 
+@pytest.mark.parametrize("late", [False, True], ids=["prompt", "late"])
+@pytest.mark.parametrize("kind", STEPPED)
+def test_an_output_alone_is_the_same_to_the_last_bit(kind: str, late: bool) -> None:
+    """Forces that no wanted output is made of are not computed."""
+    names = [output.name for output in system_info(kind).outputs]
+    system = with_effect(kind, f"sensor.{names[0]}:delay")
+    if not late:
+        system = system.with_parameters({f"sensor.{names[0]}_delay": 0.0})
+    of = example(kind).run_of(f"sensor.{names[0]}:delay")
+    inputs = {name: values[:31] for name, values in of.inputs.items()}
+    everything = run_many([system], T[:31], inputs, kind=of.between)
+    for k in range(len(names)):
+        alone = run_many([system], T[:31], inputs, kind=of.between, outputs=[k])
+        np.testing.assert_array_equal(alone[:, 0], everything[:, k])
+
+
 @pytest.mark.parametrize(
     "loop",
     [

@@ -46,8 +46,12 @@ double& component(integrate::Experiment& of, const integrate::Seed& seed) {
 }
 }  // namespace
 
-Prediction::Prediction(const Problem& of, std::size_t index) : problem(of), task(of.tasks[index]) {
+Prediction::Prediction(const Problem& of, std::size_t index)
+    : problem(of), task(of.tasks[index]), settings(of.settings) {
   require_sound(problem, task);
+  settings.outputs = 0;
+  for (std::size_t c = 0; c < problem.model.info().outputs.size(); ++c)
+    if (task.whitening->scores(c)) settings.outputs |= 1u << c;
   const auto differentiate = [&](std::size_t parameter) {
     column_of.emplace_back(parameter, static_cast<Eigen::Index>(seeds.size()));
     seeds.push_back({Of::parameter, static_cast<int>(parameter)});
@@ -140,7 +144,7 @@ Eigen::MatrixXd Prediction::whitened_gradient(const integrate::Trajectory& run) 
 Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) const {
   const Configuration with = configuration_at(x, z);
   const auto run = problem.model.simulate(with, experiment_at(z),
-                                          with_derivatives ? seeds : std::vector<integrate::Seed>(), problem.settings);
+                                          with_derivatives ? seeds : std::vector<integrate::Seed>(), settings);
   Linearised out;
   out.residual = task.whitening->residual(Eigen::Map<const RowMatrix>(run.value.data(), run.channels, run.samples));
   if (with_derivatives) {

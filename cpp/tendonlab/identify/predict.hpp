@@ -29,6 +29,7 @@ class Prediction {
 
   const Problem& problem;
   const Task& task;
+  integrate::Settings settings;        ///< records the outputs that are scored
   std::vector<std::size_t> moving;     ///< free parameters that no condition fixes here
   std::vector<integrate::Seed> seeds;  ///< of the moving parameters, the states, other scattered ones
   std::vector<std::pair<std::size_t, Eigen::Index>> column_of;  ///< of each parameter that is differentiated

@@ -30,7 +30,7 @@ class Balancing {
         out.effort[j * samples + k] = r.acceleration[j] / inverse[j];
       }
       Instant<System, double, Drive<double>> instant(PortModes<System, double>{contact, frame}, y, drive);
-      const auto seen = observe(system, instant);
+      const auto seen = observe(system, instant, Needs::everything());
       for (std::size_t c = 0; c < channels; ++c) out.output[c * samples + k] = system.sensor[c].apply(seen[c]);
     }
     return out;

@@ -1,5 +1,6 @@
 #pragma once
 // The input and the result of a simulation: plain data, the same for every system.
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -43,7 +44,8 @@ struct Settings {
   double tolerance = 1e-6;
   double position_scale = 1e-2, velocity_scale = 1e-2;  ///< error is relative to scale + |value|
   long max_attempts = 20'000'000;
-  bool ports = false;  ///< also record what each port sees and does
+  bool ports = false;           ///< also record what each port sees and does
+  std::uint32_t outputs = ~0u;  ///< a bit per output that is recorded; the others stay 0
 };
 
 struct Trajectory {
@@ -55,9 +57,11 @@ struct Trajectory {
 
   /// Where the samples of each output go; null: nobody wants them.
   using Rows = std::vector<double*>;
-  Rows rows() {
+  /// A bit per output that is wanted.
+  Rows rows(std::uint32_t wanted) {
     Rows all;
-    for (int c = 0; c < channels; ++c) all.push_back(value.data() + static_cast<std::ptrdiff_t>(c) * samples);
+    for (int c = 0; c < channels; ++c)
+      all.push_back((wanted >> c & 1u) != 0 ? value.data() + static_cast<std::ptrdiff_t>(c) * samples : nullptr);
     return all;
   }
   /// Writes the derivatives of one output at one sample into `width` columns of the gradient from `column` on.

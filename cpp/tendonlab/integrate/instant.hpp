@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "tendonlab/integrate/contact.hpp"
+#include "tendonlab/integrate/needs.hpp"
 
 namespace tendonlab::integrate {
 /// The ports at one instant, computed on first use: most outputs need none.
@@ -44,12 +45,14 @@ class Instant {
   std::optional<std::array<T, slots<System>>> borne;
 };
 
-/// The outputs at an instant, before their sensors.
+/// The outputs at an instant, before their sensors; those that need more than `wanted` are meaningless.
 template <class System, class Instant>
-auto observe(const System& system, Instant& instant) {
-  const auto acts = [&](auto i) { return instant.template force<i>(); };
-  const auto port = [&](auto i) -> const auto& {
-    return instant.coupled().port[i];
+auto observe(const System& system, Instant& instant, const Needs& wanted) {
+  using S = std::decay_t<decltype(instant.y.at.time)>;
+  const auto acts = [&](auto i) TENDONLAB_ALWAYS { return wanted.force(i) ? instant.template force<i>() : S(0.0); };
+  static const Sliding<S> unseen{};
+  const auto port = [&](auto i) TENDONLAB_ALWAYS -> const Sliding<S>& {
+    return wanted.ports ? instant.coupled().port[i] : unseen;
   };
   return system.observe(instant.y.at, acts, port);
 }

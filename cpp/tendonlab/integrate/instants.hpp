@@ -13,11 +13,12 @@ class Instants {
 
  public:
   Instants(const System& of, const Experiment& experiment) : system(of), in(experiment) {}
-  /// The outputs at eight states, as their sensors show them.
+  /// The outputs at eight states, as their sensors show them; those that need more than `wanted` are meaningless.
   template <class Modes>
-  [[gnu::noinline, gnu::flatten]] auto outputs(const Y& y, const Modes& modes, const Readings<double>& inputs) {
+  [[gnu::noinline, gnu::flatten]] auto outputs(const Y& y, const Modes& modes, const Readings<double>& inputs,
+                                               const Needs& wanted) {
     At at = instants(y, modes, inputs);
-    auto seen = observe(system, at);
+    auto seen = observe(system, at, wanted);
     for (std::size_t c = 0; c < seen.size(); ++c) seen[c] = system.sensor[c].apply(seen[c]);
     return seen;
   }

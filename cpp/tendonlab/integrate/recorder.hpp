@@ -24,8 +24,11 @@ class Recorder {
         column(first_column),
         width(columns),
         records_ports(with_ports) {
-    for (std::size_t c = 0; c < channels; ++c)
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (!rows[c]) continue;
+      wanted |= needs[c];
       delay[c] = system.sensor[c].delay(), late = late || plain(delay[c]) > 0 || varies(delay[c]);
+    }
   }
   /// From now on writes several samples of a step together: `of`, which outlives this, has the same numbers in every
   /// lane.
@@ -45,7 +48,7 @@ class Recorder {
         Y y = s.at((time[next[0]] - over.start) * per_length);
         y.at.time = T(time[next[0]]);
         Instant<System, T, Inputs> instant(port_modes, y, in);
-        const auto seen = observe(system, instant);
+        const auto seen = observe(system, instant, wanted);
         for (std::size_t c = 0; c < channels; ++c) write(c, next[0], seen[c]);
       }
     if (!records_ports) return;
@@ -59,23 +62,27 @@ class Recorder {
 
  private:
   void write(std::size_t channel, std::size_t sample, const T& seen) {
+    if (!rows[channel]) return;
     const T shown = system.sensor[channel].apply(seen);
-    if (rows[channel]) rows[channel][sample] = plain(shown);
+    rows[channel][sample] = plain(shown);
     out.write_derivatives(channel, sample, shown, column, width);
   }
   static constexpr std::ptrdiff_t fewest = 3;  ///< samples that are written together
-  /// Samples of one step, eight at a time from the `first` on: write(states, first).
+  /// Samples of one step, eight at a time from the `first` on, each as it was `ago` earlier: write(states, first).
   template <class Write>
-  void in_groups(const Step<Y>& s, const Interval& over, double reached, std::size_t& first, Write&& write) {
+  void in_groups(const Step<Y>& s, const Interval& over, double reached, double ago, std::size_t& first,
+                 Write&& write) {
     constexpr auto most = static_cast<std::ptrdiff_t>(Lanes::count);
-    const auto end = std::upper_bound(time.begin() + static_cast<std::ptrdiff_t>(first), time.end(), reached);
+    const auto begin = time.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = std::upper_bound(begin, time.end(), reached, [&](double to, double t) { return to < t - ago; });
+    if (begin != end && *begin - ago < over.start) return;  // before the record all was as at its start
     for (;;) {
       const auto from = time.begin() + static_cast<std::ptrdiff_t>(first);
       const auto here = std::min(end - from, most);
       if (here < fewest) return;
       const bool full = time.end() - from >= most;
       const Lanes at =
-          full ? Lanes(&*from) : by_lane([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; });
+          (full ? Lanes(&*from) : by_lane([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; })) - ago;
       auto y = s.at(Lanes((at - over.start) * (1.0 / over.length)));
       y.at.time = at;
       write(y, first);
@@ -92,13 +99,18 @@ class Recorder {
   template <class Frame, class Inputs>
   void write_groups(const Step<Y>& s, const Interval& over, double reached, const Frame& frame, const Inputs& in) {
     if (!late)
-      in_groups(s, over, reached, next[0], [&](const auto& y, std::size_t first) {
-        const auto seen = together->outputs(y, frame, in);
+      in_groups(s, over, reached, 0.0, next[0], [&](const auto& y, std::size_t first) {
+        const auto seen = together->outputs(y, frame, in, wanted);
         for (std::size_t c = 0; c < channels; ++c)
           if (rows[c]) put(seen[c], rows[c], first);
       });
+    for (std::size_t c = 0; late && c < channels; ++c)
+      if (rows[c])
+        in_groups(s, over, reached, delay[c], next[c], [&](const auto& y, std::size_t first) {
+          put(together->outputs(y, frame, in, needs[c])[c], rows[c], first);
+        });
     if (records_ports)
-      in_groups(s, over, reached, next_port, [&](const auto& y, std::size_t first) {
+      in_groups(s, over, reached, 0.0, next_port, [&](const auto& y, std::size_t first) {
         const auto of_ports = together->ports(y, frame, in);
         for (std::size_t k = 0; k < of_ports.size(); ++k) put(of_ports[k], &out.port[k * time.size()], first);
       });
@@ -107,13 +119,13 @@ class Recorder {
   [[gnu::noinline]] void write_late(const Step<Y>& s, const Interval& over, double reached,
                                     const PortModes<System, T>& port_modes, const Inputs& in) {
     for (std::size_t c = 0; c < channels; ++c)
-      for (; next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
+      for (; rows[c] && next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
         const T then = time[next[c]] - delay[c], share = (then - over.start) * (1.0 / over.length);
         const bool begun = plain(share) > 0;  // before the record all was as at its start
         Y y = s.at(begun ? share : T(0.0));
         y.at.time = begun ? then : T(over.start);
         Instant<System, T, Inputs> instant(port_modes, y, in);
-        write(c, next[c], observe(system, instant)[c]);
+        write(c, next[c], observe(system, instant, needs[c])[c]);
       }
   }
   /// Velocity, position, load and force of each port.
@@ -134,6 +146,8 @@ class Recorder {
   const Trajectory::Rows rows;
   const int column, width;
   const bool records_ports;
+  const std::array<Needs, channels> needs = needs_of_outputs<System, T>(system);
+  Needs wanted;  ///< of the outputs that somebody wants
   bool late = false;
   std::array<T, channels> delay{};
   std::array<std::size_t, channels> next{};

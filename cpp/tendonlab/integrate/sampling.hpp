@@ -53,7 +53,7 @@ class Sampling {
       if (shows) write_ports(k, sample);
     }
     out.attempts = static_cast<long>(time.size());
-    const auto rows = out.rows();
+    const auto rows = out.rows(~0u);
     for (std::size_t c = 0; c < channels; ++c)
       for (std::size_t k = 0; k < time.size(); ++k) {
         const T shown = system.sensor[c].apply(seen(all, c, k));

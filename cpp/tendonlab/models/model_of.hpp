@@ -53,7 +53,7 @@ class ModelOf final : public Model {
         std::string message;
         try {
           auto run = simulate(with, experiment, {}, settings);
-          const auto from = run.rows();
+          const auto from = run.rows(~0u);
           for (std::size_t c = 0; c < rows.size(); ++c)
             if (rows[c]) std::copy_n(from[c], run.samples, rows[c]);
         } catch (const NumericalError& error) {

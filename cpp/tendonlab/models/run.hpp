@@ -91,8 +91,8 @@ void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) 
   const auto velocity = job.seeded<T>(experiment.velocity, integrate::Seed::Of::velocity);
   std::copy(position.begin(), position.end(), simulation.y.at.position.begin());
   std::copy(velocity.begin(), velocity.end(), simulation.y.at.velocity.begin());
-  integrate::Recorder<Of, T> recorder(system, experiment, job.out, job.out.rows(), static_cast<int>(job.first),
-                                      static_cast<int>(job.count), job.shows_ports());
+  integrate::Recorder<Of, T> recorder(system, experiment, job.out, job.out.rows(job.settings.outputs),
+                                      static_cast<int>(job.first), static_cast<int>(job.count), job.shows_ports());
   std::optional<Of<Lanes>> alike;
   if constexpr (std::is_same_v<T, double>) {
     alike = assemble_alike<Of>(job.described, job.with);
