@@ -19,7 +19,7 @@ from tendonlab.simulation.system import System
 AROUND_JUMPS = 0.1  # s
 EVERY = 20  # steps of 1 ms a sample of a twin's log
 NOMINAL_SD = {"cable_stiffness": 200.0 / 1.96, "cable_damping": 700.0 / 1.96, "pretension": 2.0}  # Table II; assumed
-NOISE_SD = {"joint_angle": 2.4e-5, "joint_velocity": 2e-3, "cable_force_1": 1.5, "cable_force_2": 1.5}
+NOISE_SD = {"joint_angle": 1.4e-5, "joint_velocity": 2e-3, "cable_force_1": 1.5, "cable_force_2": 1.5}
 UNITS = {"joint_angle": "rad", "joint_velocity": "rad/s", "cable_force_1": "N", "cable_force_2": "N"}
 RUNS: Mapping[str, tuple[tuple[float, ...], float, str]] = {  # set points, rad; speed, rad/s; split
     "up": ((0.0, 0.6, 0.3), 0.06, "train"),
