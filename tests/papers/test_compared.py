@@ -23,6 +23,15 @@ def test_a_number_is_within_its_tolerance_or_beyond_its_bound() -> None:
     assert "1.05" in shown(table).to_html()
 
 
+def test_differences_of_rounding_and_large_ones_are_shown_plainly() -> None:
+    table = compared([Number("same", "m", PAPER, 0.3, 0.1 + 0.2, 1e-9), Number("large", "N", PAPER, 20.0, 74.7, 501.6)])
+    assert table["difference"]["same"] != 0.0
+    html = shown(table).to_html()
+    assert "e-17" not in html
+    assert ">55<" in html
+    assert ">502<" in html
+
+
 def test_an_unknown_status_is_refused() -> None:
     with pytest.raises(ParameterError, match="status = 'printed'"):
         compared([Number("x", "1", "printed", 1.0, 1.0, 0.0)])

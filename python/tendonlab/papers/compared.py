@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pandas.io.formats.style import Styler
 
 PAPER, DERIVED, RECONSTRUCTED, TWIN = STATUSES = ("paper", "derived", "reconstructed", "twin")
+ROUNDING = 1e-11  # of the expected value: a difference that is due to doubles
 COLUMNS = ("unit", "status", "expected", "computed", "difference", "tolerance", "within")
 
 
@@ -61,10 +62,15 @@ def compared(numbers: Iterable[Number]) -> pd.DataFrame:
 
 
 def shown(table: pd.DataFrame) -> Styler:
-    """The table for a notebook: five digits of the values, two of differences and tolerances."""
-    values, errors = (
-        dict.fromkeys(("expected", "computed"), "{:.5g}"),
-        dict.fromkeys(("difference", "tolerance"), "{:.1g}"),
-    )
-    formats: dict[Any, Any] = {**values, **errors}
-    return table.style.format(formats)
+    """The table for a notebook: five digits of the values, one of differences and tolerances below ten; a difference of
+    rounding is none."""
+    rounding = table["difference"].abs() <= ROUNDING * table["expected"].abs()
+    formats: dict[Any, Any] = {
+        **dict.fromkeys(("expected", "computed"), "{:.5g}"),
+        **dict.fromkeys(("difference", "tolerance"), _short),
+    }
+    return table.assign(difference=table["difference"].mask(rounding, 0.0)).style.format(formats)
+
+
+def _short(value: float) -> str:
+    return f"{value:.1g}" if abs(value) < 9.5 else f"{value:.0f}"

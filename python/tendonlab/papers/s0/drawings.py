@@ -47,16 +47,14 @@ def pulley_diagram(axes: tuple[Axes, Axes], of: Configuration, *, pretension: fl
         (of.pulley.gravity, -of.pulley.weight, "W", PUSH),
         (of.pulley.disc or 0.0, -of.external.weight, "W_{ext}", PUSH),
     ]
-    _shaft(axes, of, of.pulley, found, weights, cable_pull(of, pretension), "Fig. 8  Pulley shaft")
+    _shaft(axes, of.pulley, found, weights, cable_pull(of, pretension), "Fig. 8  Pulley shaft")
 
 
 def capstan_diagram(axes: tuple[Axes, Axes], of: Configuration, *, pretension: float) -> None:
     """Fig. 9: the capstan's shaft likewise."""
     found = capstan_reactions(of, pretension=pretension)
     weights = [(of.capstan.gravity, -of.capstan.weight, "W", PUSH)]
-    _shaft(
-        axes, of, of.capstan, found, weights, cable_pull(of, pretension), "Fig. 9  Capstan shaft, arrows not to scale"
-    )
+    _shaft(axes, of.capstan, found, weights, cable_pull(of, pretension), "Fig. 9  Capstan shaft")
 
 
 def drive_scheme(ax: Axes) -> Axes:
@@ -86,7 +84,6 @@ def drive_scheme(ax: Axes) -> Axes:
 
 def _shaft(
     axes: tuple[Axes, Axes],
-    of: Configuration,
     shaft: Shaft,
     found: Reactions,
     weights: list[Force],
@@ -103,7 +100,7 @@ def _shaft(
         axes, (vertical, level), ("vertical plane x–y", "plane of the cable, x–z"), strict=True
     ):
         _beam(ax, shaft, [f for f in forces if f[1] != 0.0])
-        ax.set_title(f"{title}, {of.name}: {plane}", fontsize=10)
+        ax.set_title(f"{title}: {plane}", fontsize=10)
 
 
 def _beam(ax: Axes, shaft: Shaft, forces: list[Force]) -> None:

@@ -24,6 +24,7 @@ COLOURS = {"none": "#1b1f24", "D": "#0072b2", "D2M": "#d55e00", "D4M": "#009e73"
 WORDS = {"none": "no load", "D": "disc", "D2M": "disc and 2 masses", "D4M": "disc and 4 masses"}
 HIGHEST = 0.26  # N·m, top of Figs 10 to 16: one scale for all
 MARKS = ("o", "s", "^", "D")
+SHOWN = 5  # draw every fifth sample of a run: the eye sees no more
 SPEED, TORQUE, ERROR = "input speed (rad/s)", "friction torque (N·m)", "absolute error (N·m)"
 
 
@@ -36,7 +37,7 @@ def stiffness_against_torque(
         k = [torsional_stiffness(of, load_torque=t, pretension=pretension) for t in torque]
         ax.plot(torque, k, label=f"{pretension:g} N")
     ax.set(xlabel="transmitted torque (N·m)", ylabel="torsional stiffness (N·m/rad)")
-    ax.set_title("Fig. 4  Stiffness against transmitted torque")
+    ax.set_title("Fig. 4  Stiffness against torque (reconstructed)")
     ax.legend(title="preload")
     return ax
 
@@ -47,7 +48,11 @@ def stiffness_against_preload(ax: Axes, of: Configuration, *, torques: Sequence[
         pretension = np.linspace(1.05 * torque / of.pulley.diameter, 250.0, 80)
         k = [torsional_stiffness(of, load_torque=torque, pretension=t) for t in pretension]
         ax.plot(pretension, k, label=f"{torque:g} N·m")
-    ax.set(xlabel="preload (N)", ylabel="torsional stiffness (N·m/rad)", title="Fig. 5  Stiffness against preload")
+    ax.set(
+        xlabel="preload (N)",
+        ylabel="torsional stiffness (N·m/rad)",
+        title="Fig. 5  Stiffness against preload (reconstructed)",
+    )
     ax.set_ylim(bottom=0)
     ax.legend(title="torque", loc="lower right", ncols=4)
     return ax
@@ -59,12 +64,12 @@ def run_figure(axes: tuple[Axes, Axes], run: pd.DataFrame) -> None:
     angle, torque = run["input_angle"].to_numpy(), torque_of(run)
     kept = steady_segment(time, angle)
     speed = velocity(time, wavelet_denoise(angle, level=None))
-    axes[0].plot(time, angle, color=COLOURS["D"], label="angle")
+    axes[0].plot(time[::SHOWN], angle[::SHOWN], color=COLOURS["D"], label="angle")
     axes[0].set(ylabel="input angle (rad)", title="Fig. 7  A run at 1000 rpm without load (twin)")
     beside = axes[0].twinx()
-    beside.plot(time, speed, color=COLOURS["D2M"], lw=0.9)
+    beside.plot(time[::SHOWN], speed[::SHOWN], color=COLOURS["D2M"], lw=0.9)
     beside.set_ylabel("input speed (rad/s)", color=COLOURS["D2M"])
-    axes[1].plot(time, torque, ".", ms=1.5, color="0.55", label="from the load cells")
+    axes[1].plot(time, torque, ".", ms=1.5, color="0.55", rasterized=True, label="from the load cells")
     mean = float(torque[kept].mean())
     axes[1].plot(time[[kept.start, kept.stop - 1]], [mean, mean], color="k", label=f"mean {mean:.4f} N·m")
     axes[1].set(xlabel="time (s)", ylabel="reactive torque (N·m)")

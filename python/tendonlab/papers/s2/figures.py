@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from tendonlab import _core
+from tendonlab.papers.s2.equations import Array
 from tendonlab.papers.s2.estimate import Estimate
 from tendonlab.papers.s2.identify import bushing_law
 from tendonlab.papers.s2.values import Constants
@@ -18,28 +20,33 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 RED, BLUE, GREY = COLOURS["with_effect"], COLOURS["refitted"], COLOURS["nominal"]
+THINNED = 10  # draw every tenth sample of a smooth curve: the eye sees no more
 
 
-def draw_gear(ax: Axes, points: pd.DataFrame, fit: Estimate, printed: Constants) -> Axes:
-    """Fig. 9: motor torque against motor speed, mean and sd of each set point, and the fitted arctangent."""
+def draw_gear(axes: Sequence[Axes], points: pd.DataFrame, fit: Estimate, printed: Constants) -> Sequence[Axes]:
+    """Fig. 9: motor torque against motor speed, mean and sd of each set point, and the fitted arctangent; below, what
+    lies above the fit; on two axes."""
+    ax, left = axes
     speed = np.linspace(points["speed"].min(), points["speed"].max(), 301)
     of = _core.friction.Arctan
     fitted = of(friction=fit["alpha"], friction_slope=fit["beta"]).force(velocity=speed)
     known = of(friction=printed.alpha, friction_slope=printed.beta).force(velocity=speed)
+    at_points = of(friction=fit["alpha"], friction_slope=fit["beta"]).force(velocity=points["speed"].to_numpy())
     mean, spread = 1e3 * points["torque_mean"], 1e3 * points["torque_std"]
     ax.errorbar(
         points["speed"], mean, spread, fmt="o", ms=3, lw=0.8, color=INK, label="set points (synthetic), mean and sd"
     )
     ax.plot(speed, 1e3 * fitted, color=BLUE, label=r"fit, $\alpha\,\arctan(\beta\omega)$")
     ax.plot(speed, 1e3 * known, color=RED, ls="--", lw=1.0, label="Table II")
-    ax.set(
-        xlabel=r"motor speed $\omega$ (rad/s)",
-        ylabel="motor torque (mN m)",
-        title="Fig. 9  Friction of the harmonic gear",
-    )
+    left.errorbar(points["speed"], mean - 1e3 * at_points, spread, fmt="o", ms=3, lw=0.8, color=INK)
+    left.plot(speed, 1e3 * (known - fitted), color=RED, ls="--", lw=1.0)
+    left.axhline(0.0, color=BLUE)
+    ax.set(ylabel="motor torque (mN·m)", title="Fig. 9  Friction of the harmonic gear (synthetic points)")
+    left.set(xlabel=r"motor speed $\omega$ (rad/s)", ylabel="less the fit (mN·m)")
     ax.legend()
-    tidy(ax)
-    return ax
+    for one in axes:
+        tidy(one)
+    return axes
 
 
 def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequence[Axes]:
@@ -48,7 +55,7 @@ def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequ
     axes[0].plot(ramps.index, ramps["force"], ".", ms=1.5, color=INK, rasterized=True, label="measured (synthetic)")
     axes[0].plot(ramps.index, estimated, color=BLUE, lw=1.0, label="estimated")
     axes[1].plot(ramps.index, ramps["force"] - estimated, ".", ms=1.5, color=MUTED, rasterized=True)
-    axes[0].set(ylabel="cable force (N)", title="Fig. 10  Stiffness and damping of the cable, 200 to 500 N")
+    axes[0].set(ylabel="cable force (N)", title="Fig. 10  Stiffness and damping of the cable (synthetic points)")
     axes[1].set(xlabel="time (s)", ylabel="residual (N)")
     axes[0].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     for ax in axes:
@@ -92,35 +99,37 @@ def draw_split(ax: Axes, of: Constants, parts: Sequence[Mapping[str, np.ndarray]
     return ax
 
 
-def draw_force(
-    ax: Axes,
-    measured: pd.Series[float],
-    simulated: pd.Series[float],
-    band: tuple[np.ndarray, np.ndarray],
-    *,
-    cable: int,
-) -> Axes:
-    """Fig. 12a, b: force of a cable at its nut, measured on the twin and simulated with its 95 % band, against time."""
-    ax.fill_between(simulated.index, *band, color=BLUE, alpha=0.25, lw=0, label="95 % band")
-    ax.plot(measured.index, measured, color=INK, lw=0.9, label="measured (twin)")
-    ax.plot(simulated.index, simulated, color=BLUE, lw=1.1, label="simulated")
-    letter = "ab"[cable - 1]
-    ax.set(xlabel="time (s)", ylabel=f"cable force $F_{cable}$ (N)", title=f"Fig. 12{letter}  Force of cable {cable}")
-    ax.legend(loc="best")
+def draw_force(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float], *, cable: int) -> Axes:
+    """Fig. 12a, b: force of a cable at its nut, measured on the twin and simulated, against time."""
+    _pair(ax, measured, simulated)
+    ax.set(ylabel=f"cable force $F_{cable}$ (N)", title=f"Fig. 12{'ab'[cable - 1]}  Force of cable {cable} (twin)")
+    return ax
+
+
+def draw_difference(ax: Axes, time: ArrayLike, error: Array, band: tuple[Array, Array], *, cable: int) -> Axes:
+    """Below Fig. 12a, b: the measured force less the simulated one, N, and the band that holds 95 % of such samples."""
+    ax.fill_between(time, *band, color=RED, alpha=0.35, lw=0, rasterized=True, label="95 % band of a sample")
+    ax.plot(time, error, ".", ms=1, color=INK, rasterized=True)
+    title = f"Fig. 12{'ab'[cable - 1]}, difference; more than 10 N in the shifts (twin)"
+    ax.set(ylabel="difference (N)", ylim=(-10, 10), title=title)
+    ax.legend(loc="upper right")
     tidy(ax)
     return ax
 
 
 def draw_motion(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float], *, letter: str) -> Axes:
     """Fig. 12c, d: velocity or angle of the joint, measured on the twin and simulated, against time."""
-    of_velocity = letter == "c"
-    ax.plot(measured.index, measured, color=INK, lw=0.7, label="measured (twin)")
-    ax.plot(simulated.index, simulated, color=BLUE, lw=1.2, label="simulated")
-    name = r"joint velocity $\dot\theta$ (rad/s)" if of_velocity else r"joint angle $\theta$ (rad)"
-    ax.set(xlabel="time (s)", ylabel=name, title=f"Fig. 12{letter}  Joint {'velocity' if of_velocity else 'angle'}")
+    _pair(ax, measured, simulated)
+    what, name = ("velocity", r"$\dot\theta$ (rad/s)") if letter == "c" else ("angle", r"$\theta$ (rad)")
+    ax.set(ylabel=f"joint {what} {name}", title=f"Fig. 12{letter}  Joint {what} (twin)")
+    return ax
+
+
+def _pair(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float]) -> None:
+    ax.plot(measured.index, measured, color=INK, lw=0.8, rasterized=True, label="measured (twin)")
+    ax.plot(simulated.index[::THINNED], simulated.iloc[::THINNED], color=BLUE, lw=1.1, label="simulated")
     ax.legend(loc="best")
     tidy(ax)
-    return ax
 
 
 def mark_shifts(ax: Axes, shifts: pd.DataFrame) -> Axes:

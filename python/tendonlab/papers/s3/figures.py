@@ -108,15 +108,22 @@ def in_time(ax: Axes, record: Record, *, label: str = r"$\tau_{out}$", colour: s
     tidy(ax)
 
 
-def compared(ax: Axes, record: Record, prediction: Prediction, *, title: str) -> None:
-    """Measured and predicted output over time."""
+def compared(axes: Sequence[Axes], record: Record, prediction: Prediction, *, title: str) -> None:
+    """Measured and predicted output over time, and their difference, on two axes."""
+    ax, left = axes
     time, measured = record.log.index.to_numpy(), record.log["tau_out"].to_numpy()
-    ax.plot(time, record.log["tau_in"], color="#b8c0c8", lw=1.0, label=r"$\tau_{in}$")
+    ax.plot(time[::SHOWN], record.log["tau_in"].iloc[::SHOWN], color="#b8c0c8", lw=1.0, label=r"$\tau_{in}$")
     ax.plot(time[::SHOWN], measured[::SHOWN], ".", ms=2.0, color=INK, rasterized=True, label=r"$\tau_{out}$, twin")
-    ax.plot(time, prediction.tau_out, color=MODEL, lw=1.2, label=r"$\tau_{out}$, model")
+    ax.plot(time[::SHOWN], prediction.tau_out[::SHOWN], color=MODEL, lw=1.2, label=r"$\tau_{out}$, model")
     ax.set(xlabel="time (s)", ylabel="torque (N·m)", title=title)
     ax.margins(x=0.01, y=0.2)
-    tidy(ax)
+    error = measured - prediction.tau_out
+    left.plot(time[::SHOWN], error[::SHOWN], ".", ms=1.5, color=INK, rasterized=True)
+    left.axhline(0.0, color=MODEL, lw=1.2)
+    left.set(xlabel="time (s)", ylabel="twin less model (N·m)", ylim=(-1.6, 1.6), title="difference (twin)")
+    left.locator_params(axis="x", nbins=5)
+    for one in axes:
+        tidy(one)
 
 
 def _settled(record: Record) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -154,14 +155,18 @@ def draw_friction(ax: Axes, run: pd.DataFrame, *, without: pd.DataFrame | None =
     return ax
 
 
-def draw_fit(ax: Axes, read: pd.DataFrame, simulated: pd.DataFrame, *, name: str = "T22") -> Axes:
-    """Fig. 12, 14b: a measured tension and the simulated one."""
+def draw_fit(axes: Sequence[Axes], read: pd.DataFrame, simulated: pd.DataFrame, *, name: str = "T22") -> Sequence[Axes]:
+    """Fig. 12: a measured tension and the simulated one, and their difference, on two axes."""
+    ax, left = axes
     ax.plot(read.index, read[name], ".", color=INK, ms=1.2, alpha=0.5, rasterized=True, label="measured (twin)")
     ax.plot(simulated.index, simulated[name], color=ORANGE, lw=1.2, label="simulated")
     low, high = float(read[name].min()), float(read[name].max())
-    ax.set(xlabel="time (s)", ylabel=f"$T_{{{name[1:]}}}$ (N)", ylim=(low - 2, high + 0.2 * (high - low)))
+    ax.set(ylabel=f"$T_{{{name[1:]}}}$ (N)", ylim=(low - 2, high + 0.25 * (high - low)))
     ax.legend(loc="upper center", ncols=2, markerscale=5)
-    return ax
+    left.plot(read.index, read[name] - simulated[name], ".", color=INK, ms=1.2, alpha=0.5, rasterized=True)
+    left.axhline(0.0, color=ORANGE, lw=1.2)
+    left.set(xlabel="time (s)", ylabel="difference (N)")
+    return axes
 
 
 def draw_coefficient(ax: Axes, time: np.ndarray, mu: np.ndarray, kept: np.ndarray) -> Axes:
