@@ -9,8 +9,8 @@ import pytest
 from tendonlab.diagnosis.search import contest
 from tendonlab.diagnosis.search.contest import Round, _explains_enough, _worth_adding, probabilities
 from tendonlab.diagnosis.search.refit import _goal, strained
+from tendonlab.diagnosis.search.screen import Screened, _score, _starts, _unit
 from tendonlab.diagnosis.search.screen import _Score as Score
-from tendonlab.diagnosis.search.screen import _score, _starts, _unit
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -149,7 +149,6 @@ def test_a_sketch_is_finished_where_it_can_reach_half_of_the_rivals_gain() -> No
     base = evident(-100.0, cost=90.0, runs=[SimpleNamespace(residual=np.zeros(50))] * 2)
     repeated, alone = fitter_of(repeated=True), fitter_of(repeated=False)
     assert _goal(repeated, base, None, -60.0) == pytest.approx(90.0 - 0.5 * 40.0)
-    assert _goal(repeated, base, None, None) == np.inf
     assert _goal(repeated, base, evident(-30.0), -60.0) == pytest.approx(90.0 - 20.0)  # 50 nats behind the best
     assert _goal(repeated, base, evident(20.0), -60.0) == pytest.approx(90.0 - 70.0)
     assert _goal(alone, base, None, -60.0) == pytest.approx(90.0 * np.exp(-2.0 * 20.0 / 100))
@@ -239,13 +238,40 @@ def test_candidates_that_tuning_hides_are_refitted_as_well(
     chosen: str, there: str, expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def screened(names: str) -> Any:
-        return [SimpleNamespace(effect=name, gain=100.0 - place) for place, name in enumerate(names)]
+        return [Screened(name, 100.0 - place, ({},), 1.0) for place, name in enumerate(names)]
 
     monkeypatch.setattr(contest, "at_believed_values", lambda fitter, base: (fitter, base))
-    shop: Any = SimpleNamespace(screen_all=lambda *_: [*screened(there), SimpleNamespace(effect="dim", gain=0.1)])
+    shop: Any = SimpleNamespace(screen_all=lambda *_: [*screened(there), Screened("dim", 0.1, ({},), 1.0)])
     nothing: Any = None
     found = contest._with_hidden(nothing, nothing, screened(chosen), DETECT, shop)
     assert "".join(s.effect for s in found) == expected
+
+
+@pytest.mark.parametrize(
+    ("here", "there", "behind"),
+    [
+        ((500.0, 49.0), (90.0, 8.9), [False, True]),
+        ((500.0, 51.0), (90.0, 8.9), [False, False]),  # a tenth of the most promised at tuned values
+        ((500.0, 49.0), (90.0, 9.1), [False, False]),  # or at believed ones
+        ((500.0, 49.0), (90.0, None), [False, False]),  # nobody knows what it would do there
+    ],
+)
+def test_far_behind_is_a_candidate_that_promises_little_at_tuned_and_at_believed_values(
+    here: tuple[float, ...], there: tuple[float | None, ...], behind: list[bool]
+) -> None:
+    chosen = [Screened(name, gain, ({},), 1.0) for name, gain in zip("ab", here, strict=True)]
+    believed = [
+        Screened(name, gain or 0.0, ({},), 1.0, gain is not None) for name, gain in zip("ab", there, strict=True)
+    ]
+    assert [s.far_behind for s in contest._behind(chosen, believed)] == behind
+
+
+def test_near_the_floor_an_effect_must_gain_a_share_of_the_cost() -> None:
+    def base(mean_square: float) -> Any:
+        return SimpleNamespace(mean_square=mean_square, cost=1000.0)
+
+    assert contest._least_gain(base(1.2), DETECT) == pytest.approx(50.0)  # a twentieth
+    assert contest._least_gain(base(1.4), DETECT) == DETECT.evidence
 
 
 @pytest.mark.parametrize("error", [NumericalError, ParameterError])

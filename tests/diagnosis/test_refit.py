@@ -126,7 +126,7 @@ def test_a_sketch_that_reaches_its_goal_is_finished(
     monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
     monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
     fitter: Any = Fits(*fits)
-    made: Any = refits._fit(fitter, tuned(), {"b": {}}, None, pace=None)
+    made: Any = refits._fit(fitter, tuned(), {"b": {}}, None, pace=0.0)
     assert (made[0] if made else None) == found
     assert len(fitter.asked) == asked
     assert fitter.asked[0]["added"] == ("a", "b")
@@ -154,6 +154,21 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
     monkeypatch.setattr(refits, "strained", lambda *_: pulled)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, simulated), pace=None)
+    found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, simulated), pace=0.0)
     assert tried == nominal
     assert found is not None
+
+
+def test_a_candidate_far_behind_others_is_not_fitted_from_nominal_values(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = []
+
+    def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
+        tried.append(from_nominal)
+        return SimpleNamespace(mean_square=5.0, evidence=1.0)
+
+    monkeypatch.setattr(refits, "_fit", fit)
+    monkeypatch.setattr(refits, "strained", lambda *_: True)
+    monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
+    nothing: Any = None
+    refits.refit(nothing, nothing, Screened("b", 1.0, ({},), 1.0, far_behind=True), pace=0.0)
+    assert tried == [False]

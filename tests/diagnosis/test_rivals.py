@@ -187,7 +187,7 @@ def test_a_trial_that_is_fitted_already_contests_and_is_not_fitted_once_more(
 ) -> None:
     tried = []
 
-    def noted(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | None) -> list[Trial]:
+    def noted(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> list[Trial]:
         tried.append(candidate.effect)
         return [trial(candidate.effect, 20.0)]
 
@@ -195,7 +195,7 @@ def test_a_trial_that_is_fitted_already_contests_and_is_not_fitted_once_more(
     chosen = [Screened(effect, 1.0, ({},), 1.0) for effect in (DELAY, STRIBECK, ASYMMETRY)]
     with ThreadPoolExecutor(1) as pool:
         shop = Workshop(pool, _core.Cancel(), progress=False, library=())
-        trials = shop.refit_all(fitter, nominal, chosen, "", incumbent=trial(STRIBECK, 30.0))
+        trials = shop.refit_all(fitter, nominal, chosen, "", least=10.0, incumbent=trial(STRIBECK, 30.0))
     assert tried == [DELAY, ASYMMETRY]
     assert sorted(t.effect for t in trials) == sorted([STRIBECK, DELAY, ASYMMETRY])
 

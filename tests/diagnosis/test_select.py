@@ -45,7 +45,9 @@ class Shop:
     def screen_all(self, fitter: Any, base: Any, label: str) -> list[Screened]:
         return list(self.candidates)
 
-    def refit_all(self, fitter: Any, base: Any, chosen: Any, label: str, incumbent: Any = None) -> list[Trial]:
+    def refit_all(
+        self, fitter: Any, base: Any, chosen: Any, label: str, *, least: float, incumbent: Any = None
+    ) -> list[Trial]:
         self.refitted = [s.effect for s in chosen]
         fitted = [trial(name, self.gains[name], *base.added) for name in self.refitted if name in self.gains]
         return sorted([*fitted, *([incumbent] if incumbent else [])], key=lambda t: -t.evidence_gain)

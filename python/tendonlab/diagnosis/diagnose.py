@@ -23,6 +23,7 @@ from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
 from tendonlab.simulation.system import System
 
+PLAIN = 1e-3  # relative change of the cost at which the fit of the untouched simulator's initial states ends
 FORCED = "The check of the logs found problems that mislead a diagnosis; it was made by force."
 
 log = logging.getLogger("tendonlab")
@@ -61,7 +62,9 @@ def diagnose(
         rough = rough_fit(case, shop.cancel)
         fitter = under_noise_floor(case, rough, shop.pool, shop.cancel)
         initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
-        nominal = fitter.fit(case.system, initial=initial, known=True, solve=any(initial))  # any: there may be none
+        nominal = fitter.fit(  # any: there may be no unknowns
+            case.system, initial=initial, known=True, solve=any(initial), tolerance=PLAIN
+        )
         tuned = fitter.fit(rough.system, initial=initial)
         fitter, tuned = renewed(fitter, tuned, shop.pool)
         search = confirmed(select_effects(fitter, tuned, shop), shop)

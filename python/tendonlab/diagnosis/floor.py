@@ -14,12 +14,12 @@ from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, se
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter
 
-ROUGH = 8  # iterations of the fit under white noise, of which only the residuals are used
+ROUGH, NEARLY = 8, 1e-4  # iterations and tolerance of the fit under white noise, of which only the residuals are used
 
 
 def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
     """A fit under the sensors' white noise alone, before the floor is known."""
-    return Fitter(case, white(case.noise), cancel).fit(case.system, max_iterations=ROUGH)
+    return Fitter(case, white(case.noise), cancel).fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
 
 
 def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> Fitter:

@@ -145,8 +145,7 @@ class Fitted:
         Newton step, and of how uncertain these are. A block that alone determines a value is hard to foretell."""
         if not np.isfinite(self._information).all():
             return np.full(len(self.blocks), -np.inf)
-        misfit = np.array([self._foretold(b) for b in self.blocks])
-        return np.asarray(-0.5 * (misfit + np.array(self._spreads)))
+        return np.asarray(-0.5 * (self._foretold() + np.array(self._spreads)))
 
     @property
     def scores(self) -> np.ndarray:
@@ -154,15 +153,21 @@ class Fitted:
         misfit = np.array([float(b.residual @ b.residual) for b in self.blocks])
         return np.asarray(-0.5 * (misfit + np.array(self._spreads)))
 
-    def _foretold(self, block: Score) -> float:
-        """Minus twice the logarithm of the normal density of a block's rows under the fit to the others: their
-        covariance is 1 + J C J', with C that of the coordinates there."""
-        residual = block.residual + block.jacobian @ self._step_without([block])
-        slopes = block.jacobian[:, self._moving]
-        whole, rest = (self._moving_precision(of) for of in ([], [block]))
-        along = slopes.T @ residual
+    def _foretold(self) -> np.ndarray:
+        """Of each block: minus twice the logarithm of the normal density of its rows under the fit to the others, whose
+        covariance is 1 + J C J', with C that of the coordinates there. Only J'J and J'r are needed."""
+        slopes = [b.jacobian[:, self._moving] for b in self.blocks]
+        own = np.array([j.T @ j for j in slopes])
+        pull = np.array([j.T @ b.residual for j, b in zip(slopes, self.blocks, strict=True)])
+        square = np.array([float(b.residual @ b.residual) for b in self.blocks])
+        whole = self._moving_precision([])
+        rest = whole - own
+        step = np.linalg.solve(rest, pull[..., None])[..., 0]
+        along = pull + np.einsum("bij,bj->bi", own, step)
+        square += np.einsum("bi,bi->b", pull + along, step)
         (_, volume), (_, before) = np.linalg.slogdet(whole), np.linalg.slogdet(rest)
-        return float(residual @ residual - along @ np.linalg.solve(whole, along) + volume - before)
+        settled = np.linalg.solve(whole, along.T).T
+        return np.asarray(square - np.einsum("bi,bi->b", along, settled) + volume - before)
 
     @cached_property
     def _spreads(self) -> list[float]:

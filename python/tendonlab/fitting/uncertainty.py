@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri, stdtrit
 
 from tendonlab._core import Free
 
@@ -59,7 +59,7 @@ def uncertainty(
     count = float(sum(len(residual) for residual, _, _ in runs)) if count is None else count
     covariances = _covariances(runs, precision, inside, count)
     sd = np.array([f.sd for f in free])
-    half = stats.norm.ppf(0.975) * sd
+    half = ndtri(0.975) * sd
     if (known & ~inside).any():
         sd[known], half[known] = _spread(_covariances(runs, precision, known, count))
     sd[inside], half[inside] = _spread(covariances)
@@ -121,7 +121,7 @@ def _spread(covariances: Sequence[tuple[np.ndarray, float]]) -> tuple[np.ndarray
         variance[2] = (ALIKE * variance[1] + freedom[2] * variance[2]) / (ALIKE + freedom[2])
         freedom[2] += ALIKE
     sd = np.sqrt(variance)
-    return np.max(sd, axis=0), np.max(sd * stats.t.ppf(0.975, freedom)[:, None], axis=0)
+    return np.max(sd, axis=0), np.max(sd * stdtrit(freedom, 0.975)[:, None], axis=0)
 
 
 def _intervals(

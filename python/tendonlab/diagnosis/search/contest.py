@@ -18,6 +18,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
+FAR_BEHIND = 0.1  # share of the most that another candidate promises
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
@@ -80,7 +81,7 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
         chosen = _with_hidden(fitter, base, chosen, bar, shop)
-    trials = shop.refit_all(fitter, base, chosen, label)
+    trials = shop.refit_all(fitter, base, chosen, label, least=_least_gain(base, bar))
     established = {t.effect for t in trials if bar.passed(t)}
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader is None or not _worth_adding(fitter, base, trials, further=further):
@@ -101,9 +102,23 @@ def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar,
         there = at_believed_values(fitter, base)
     except (NumericalError, ParameterError):  # the misfit there may be beyond all numbers
         return chosen
-    best = _promising(shop.screen_all(*there, "believed values"), bar)[:NUM_HIDDEN]
+    believed = shop.screen_all(*there, "believed values")
+    best = _promising(believed, bar)[:NUM_HIDDEN]
     hidden = [s for s in best if s.effect not in {c.effect for c in chosen}]
-    return [*chosen[: max(len(chosen) - len(hidden), NUM_HIDDEN)], *hidden]
+    return _behind([*chosen[: max(len(chosen) - len(hidden), NUM_HIDDEN)], *hidden], believed)
+
+
+def _behind(chosen: Sequence[Screened], believed: Sequence[Screened]) -> list[Screened]:
+    """The `chosen` candidates, marked where others promise far more, both here and at believed values: these need no
+    start from there."""
+    gain = {s.effect: s.gain if s.simulated else math.inf for s in believed}
+    here, there = (FAR_BEHIND * max((s.gain for s in of), default=0.0) for of in (chosen, believed))
+    return [replace(s, far_behind=s.gain < here and gain.get(s.effect, math.inf) < there) for s in chosen]
+
+
+def _least_gain(base: Fitted, bar: Bar) -> float:
+    """Nats that an effect must at least gain to be worth adding to `base`."""
+    return max(bar.evidence, MATTERS * base.cost) if base.mean_square < NEAR_FLOOR else bar.evidence
 
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:

@@ -24,14 +24,15 @@ COOLED = 0.01  # relative change of the cost at which a cooling ends: all that c
 Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
 
 
-def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | None) -> Fitted | None:
+def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Fitted | None:
     """The best fit of `base` with the candidate over its starts, None where no fit succeeds.
 
     `pace`: evidence of a rival, all rows counted; a fit that lies far behind is not finished."""
     best: Fitted | None = None
     for values in candidate.starts if candidate.simulated else ():
         best = more_evident(best, _fit(fitter, base, {candidate.effect: values}, best, pace=pace))
-    if best is None or (strained(fitter, base) and best.mean_square > NEAR_FLOOR):
+    hidden = strained(fitter, base) and not candidate.far_behind
+    if best is None or (hidden and best.mean_square > NEAR_FLOOR):
         fit = _fit(fitter, base, {candidate.effect: candidate.starts[0]}, best, pace=pace, from_nominal=True)
         best = more_evident(best, fit)
     return best
@@ -50,7 +51,7 @@ def _fit(
     effect: Values,
     best: Fitted | None,
     *,
-    pace: float | None,
+    pace: float,
     from_nominal: bool = False,
 ) -> Fitted | None:
     """`base` refitted with `effect`, None where that fails; only a sketch where it lies far behind the rival or `best`.
@@ -72,10 +73,10 @@ def _fit(
         return None
 
 
-def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float | None) -> float:
+def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float) -> float:
     """The cost above which a sketch lies too far behind the rival or the best fit so far."""
     here = base.counted().evidence
-    rival = -math.inf if pace is None else CATCH_UP * (pace - here)
+    rival = CATCH_UP * (pace - here)
     needed = rival if best is None else max(rival, best.counted().evidence - BEHIND - here)
     if fitter.floor.repeated:
         return base.cost - needed

@@ -86,7 +86,7 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place
     label = f"instead of {effect}"
     screened = shop.screen_all(fitter, others, label)
     promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
-    trials = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, incumbent=holder)
+    trials = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
 
     def establishes(t: Trial) -> bool:
         ahead = _clearly_better(t, holder)

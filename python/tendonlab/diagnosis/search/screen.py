@@ -28,13 +28,15 @@ INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to
 @dataclass(frozen=True)
 class Screened:
     """A candidate as the screen saw it: expected gain in nats, starting values for its fits, best first, and the gain
-    that an effect of typical size would bring (its visibility). `simulated`: whether the model ran with it at all."""
+    that an effect of typical size would bring (its visibility). `simulated`: whether the model ran with it at all;
+    `far_behind`: whether others promise far more, at tuned values and at believed ones."""
 
     effect: str
     gain: float
     starts: tuple[dict[str, float], ...]
     visibility: float
     simulated: bool = True
+    far_behind: bool = False
 
 
 @dataclass(frozen=True)

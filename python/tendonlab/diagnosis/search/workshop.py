@@ -35,12 +35,20 @@ class Workshop:
         return sorted(shown, key=lambda screened: -screened.gain)
 
     def refit_all(
-        self, fitter: Fitter, base: Fitted, chosen: Sequence[Screened], label: str, incumbent: Trial | None = None
+        self,
+        fitter: Fitter,
+        base: Fitted,
+        chosen: Sequence[Screened],
+        label: str,
+        *,
+        least: float,
+        incumbent: Trial | None = None,
     ) -> list[Trial]:
         """The chosen candidates refitted, best first. The first sets the pace for the others, unless there is an
-        `incumbent`: a trial that is fitted already."""
-        first = [incumbent] if incumbent else _tried(fitter, base, chosen[0], pace=None) if chosen else []
-        pace = max((t.fitted.counted().evidence for t in first), default=None)
+        `incumbent`: a trial that is fitted already. Those that stay far below a gain of `least` nats are sketched."""
+        pace = base.counted().evidence + least
+        first = [incumbent] if incumbent else _tried(fitter, base, chosen[0], pace=pace) if chosen else []
+        pace = max([pace, *(t.fitted.counted().evidence for t in first)])
         rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
         shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
@@ -48,7 +56,7 @@ class Workshop:
         return counted_alike(trials, base)
 
 
-def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float | None) -> list[Trial]:
+def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> list[Trial]:
     fit = refit(fitter, base, candidate, pace=pace)
     return [Trial.of(candidate.effect, fit, base)] if fit else []
 
