@@ -118,7 +118,7 @@ def amount_of_work(of: Rehearsal) -> str:
     text = f"{len(of.cases)} simulated rigs were diagnosed"
     if of.num_left_out:
         why = "the rehearsal was interrupted" if of.interrupted else "there was no time for them"
-        text += f"; {of.num_left_out} were left out because {why}. The same call with `out` goes on with them"
+        text += f"; {of.num_left_out} were left out because {why}. The same call with an output folder goes on with them"
     return f"{text}."
 
 
@@ -163,7 +163,8 @@ def _at_most(entry: EffectRehearsal) -> str:
     """How sure it is that the smallest size is enough."""
     high = entry.amounts[2]
     if high is None:
-        return f" ({entry.tried} rigs are too few to be sure)"
+        few = "one rig is" if entry.tried == 1 else f"{entry.tried} rigs are"
+        return f" ({few} too few to be sure)"
     return f" (95 %: from {amount_words(entry, high)} on at the latest)"
 
 
