@@ -118,7 +118,7 @@ def amount_of_work(of: Rehearsal) -> str:
     text = f"{len(of.cases)} simulated rigs were diagnosed"
     if of.num_left_out:
         why = "the rehearsal was interrupted" if of.interrupted else "there was no time for them"
-        text += f"; {of.num_left_out} were left out because {why}. The same call with an output folder goes on with them"
+        text += f"; {of.num_left_out} were left out because {why}. The same call with an output folder goes on"
     return f"{text}."
 
 
