@@ -35,7 +35,10 @@ def parse(unit: str) -> pint.Unit:
 
 
 def same_dimension(unit: str, other: str) -> bool:
-    """Whether one converts into the other. Hertz, counts and percent are no angle, though pint sees only numbers."""
+    """Whether one converts into the other. Hertz, counts and percent are no angle, though pint sees only numbers.
+    Pint takes half a second to load: what is written as the library writes it does without."""
+    if unit == other:
+        return True
     left, right = parse(unit), parse(other)
     if left.dimensionality != right.dimensionality:
         return False
@@ -56,7 +59,7 @@ def base_unit(unit: str) -> str:
 
 def convert(values: np.ndarray, *, unit: str, to: str) -> np.ndarray:
     """`values` in `unit`, shape (n,), expressed in `to`."""
-    if parse(unit) == parse(to):
+    if unit == to or parse(unit) == parse(to):
         return values
     converted: np.ndarray = _registry().Quantity(values, parse(unit)).to(parse(to)).magnitude
     return converted
@@ -64,7 +67,7 @@ def convert(values: np.ndarray, *, unit: str, to: str) -> np.ndarray:
 
 def convert_difference(value: float, *, unit: str, to: str) -> float:
     """A difference (a noise sd, a step) in `unit`, expressed in `to`: unlike `convert` it knows no zero point."""
-    if parse(unit) == parse(to):
+    if unit == to or parse(unit) == parse(to):
         return value
     quantity = _registry().Quantity
     return value * float(quantity(1.0, parse(unit)).to(parse(to)).m - quantity(0.0, parse(unit)).to(parse(to)).m)
