@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
 
 from tendonlab import _core
 from tendonlab.papers.s2.equations import Array
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 RED, BLUE, GREY = COLOURS["with_effect"], COLOURS["refitted"], COLOURS["nominal"]
-THINNED = 10  # draw every tenth sample of a smooth curve: the eye sees no more
+THINNED, DOTS = 10, 3  # draw every tenth sample of a smooth curve, every third of a noisy one: the eye sees no more
 
 
 def draw_gear(axes: Sequence[Axes], points: pd.DataFrame, fit: Estimate, printed: Constants) -> Sequence[Axes]:
@@ -106,10 +105,10 @@ def draw_force(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float]
     return ax
 
 
-def draw_difference(ax: Axes, time: ArrayLike, error: Array, band: tuple[Array, Array], *, cable: int) -> Axes:
+def draw_difference(ax: Axes, time: pd.Index[float], error: Array, band: tuple[Array, Array], *, cable: int) -> Axes:
     """Below Fig. 12a, b: the measured force less the simulated one, N, and the band that holds 95 % of such samples."""
     ax.fill_between(time, *band, color=RED, alpha=0.35, lw=0, rasterized=True, label="95 % band of a sample")
-    ax.plot(time, error, ".", ms=1, color=INK, rasterized=True)
+    ax.plot(time[::DOTS], error[::DOTS], ".", ms=1, color=INK, rasterized=True)
     title = f"Fig. 12{'ab'[cable - 1]}, difference; more than 10 N in the shifts (twin)"
     ax.set(ylabel="difference (N)", ylim=(-10, 10), title=title)
     ax.legend(loc="upper right")
@@ -126,7 +125,7 @@ def draw_motion(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float
 
 
 def _pair(ax: Axes, measured: pd.Series[float], simulated: pd.Series[float]) -> None:
-    ax.plot(measured.index, measured, color=INK, lw=0.8, rasterized=True, label="measured (twin)")
+    ax.plot(measured.index[::DOTS], measured.iloc[::DOTS], color=INK, lw=0.8, rasterized=True, label="measured (twin)")
     ax.plot(simulated.index[::THINNED], simulated.iloc[::THINNED], color=BLUE, lw=1.1, label="simulated")
     ax.legend(loc="best")
     tidy(ax)
