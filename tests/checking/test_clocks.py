@@ -31,6 +31,11 @@ def test_one_experiment_that_lags_blocks(seconds: float, verb: str) -> None:
     assert f"angle_1 {verb} the inputs by 50 ms more" in found.detail
 
 
+def test_outputs_that_are_late_together_take_a_plural() -> None:
+    (found,) = findings([[0.0, 0.0, 0.05, 0.0, 0.0]] * 2)
+    assert "angle_1 and angle_2 lag the inputs" in found.detail
+
+
 def test_the_lag_of_one_experiment_is_counted_from_what_all_share() -> None:
     found = findings([[0.02, 0.02, 0.09, 0.02, 0.02]])
     assert [(f.experiment, f.blocks) for f in found] == [("c", True), (None, False)]
@@ -43,7 +48,7 @@ def test_the_lag_of_one_experiment_is_counted_from_what_all_share() -> None:
     [
         (1.4 * STEP, 1e-4, 1e3),  # less than a step and a half
         (5.8 * 0.01, 0.01, 1e3),  # less than six sd
-        (0.05, 1e-4, 2.9 / 0.05),  # worth less than three times what the equations leave
+        (0.05, 1e-4, 5.8 / 0.05),  # worth less than six times what the equations leave
     ],
 )
 def test_what_may_be_chance_does_not_block(seconds: float, sd: float, weight: float) -> None:

@@ -14,7 +14,7 @@ APART = 6.0  # sd, of the lag and of its scatter among experiments, by which one
 LEAST = 1.5  # samples by which an experiment must lag the others
 LEAST_SHARED = 0.25  # of a sample, of a lag that all share
 RESOLVED = 0.25  # of a sample: no lag is known better
-MATTERS = 3.0  # levels of the residual that the lag of one experiment must be worth
+MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
 MIDDLE = 0.6745  # sd that half of all normal errors exceed
 ROUNDS = 3  # of common lag and scatter
 SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
@@ -47,7 +47,6 @@ def _one_late(
     for c in np.flatnonzero(late) if alone else [int(np.argmax(np.abs(away)))]:
         seconds = float(away[c])
         what = lags.channels[c] if alone else " and ".join(lags.channels)
-        verb = "lags" if seconds > 0 else "leads"
         yield Finding(
             problem="clock",
             signal=lags.channels[c] if alone else None,
@@ -55,8 +54,8 @@ def _one_late(
             alternatives=() if alone else (*inputs, *lags.channels),
             seconds=seconds,
             blocks=True,
-            detail=f"in {experiment}, {what} {verb} the inputs by {_time(seconds)} more than in the other experiments; "
-            "align its channels to one clock, or leave the experiment out",
+            detail=f"in {experiment}, {what} {_verb(seconds, alone or len(late) == 1)} the inputs by {_time(seconds)} "
+            "more than in the other experiments; align its channels to one clock, or leave the experiment out",
         )
 
 
@@ -71,8 +70,7 @@ def _all_late(
         seconds = float(shared[c])
         single = len(lags.channels) > 1 and not together
         what = " and ".join(lags.channels) if together else lags.channels[c]
-        verb = ("lags" if seconds > 0 else "leads") if not together or len(lags.channels) == 1 else (
-            "lag" if seconds > 0 else "lead")  # fmt: skip
+        verb = _verb(seconds, not together or len(lags.channels) == 1)
         yield Finding(
             problem="clock",
             signal=lags.channels[c] if single else None,
@@ -97,6 +95,10 @@ def _common(seconds: np.ndarray, sd: np.ndarray, level: np.ndarray) -> tuple[flo
         weight = np.cumsum(1.0 / np.hypot(sd, scatter * level)[order] ** 2)
         common = float(seconds[order][np.searchsorted(weight, 0.5 * weight[-1])])
     return common, scatter
+
+
+def _verb(seconds: float, one: bool) -> str:
+    return ("lag" if seconds > 0 else "lead") + ("s" if one else "")
 
 
 def _time(seconds: float) -> str:
