@@ -368,7 +368,7 @@ Result fit(const Problem& problem, const Options& options) {
   Predictions predictions = predictions_of(problem);
   Vector x = start_of_free(problem);
   Coordinates z = start_of_states(problem, predictions);
-  for (std::size_t e = 0; e < problem.tasks.size(); ++e) predictions[e].at(x, z[e], true);  // throws at the start, and is remembered
+  for (std::size_t e = 0; e < problem.tasks.size(); ++e) predictions[e].at(x, z[e], true);  // throws at the start
   std::exception_ptr thrown;
   ceres::Problem solved;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
