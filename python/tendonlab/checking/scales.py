@@ -14,8 +14,8 @@ from tendonlab.checking.terms import terms
 from tendonlab.fitting.noise import integrated_time
 
 LARGEST, RATIO = 2.0**18, 8.0  # factors that are tried, and from one to the next
-ROUGH, FINE = 300, 1500
-STEPS = 6  # of a fit in the search  # samples in the search, and in what decides
+ROUGH, FINE = 300, 1500  # samples in the search, and in what decides
+STEPS = 6  # of a fit in the search
 ROUGH_SHARE = 0.2  # of the samples that count as independent before the residual is known
 REFINED = 4  # of the best, which are looked at closely
 SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, beyond which factors are looked for
