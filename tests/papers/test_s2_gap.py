@@ -103,6 +103,9 @@ def test_cables_that_are_softer_at_low_tension_are_told_from_everything(tmp_path
     assert not found.indistinguishable
     assert found.effects[0].parameters["toe_tension"]["value"] == pytest.approx(200.0, rel=0.02)
     assert found.shrinkage["from_refitted"]["value"] > 0.8
+    # A fit that starts from a small toe ends without one.
+    fit = tl.identify(rig, effects=["cable:toe_region"], progress=False)
+    assert fit.values["cable_toe_tension"] == pytest.approx(200.0, rel=0.02)
 
 
 @pytest.mark.slow

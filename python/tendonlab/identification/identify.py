@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import suppress
 from dataclasses import replace
 from numbers import Integral
 from typing import TYPE_CHECKING
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 __all__ = ["Identification", "identify"]
 
 START_SHARE = 0.2  # of its typical size: where an added effect starts; at 0 its shape would have no derivative
+LARGER_SHARES = (1.0, 3.0)  # where an added effect starts again that has vanished
+VANISHED = 1e-2  # of its typical size, below which an added effect has vanished
 
 
 def identify(
@@ -67,8 +70,12 @@ def identify(
     base = dataset.system() if system is None else require_system(system)
     tolerance = None if tolerance is None else within("tolerance", tolerance, 1e-14, 0.1)
     case = make_case(dataset, base, experiments=[replace(e, split="train") for e in chosen], tolerance=tolerance)
-    problem = _problem(case, effects)
+    problem = _problem(case, effects, START_SHARE)
     fit = _solve(_starts(problem, num_starts, generator(seed)), progress=progress)
+    if fit.converged and _vanished(problem, fit):
+        with suppress(NumericalError):  # the larger effect may be one that cannot be simulated
+            larger = _solve([_problem(case, effects, share) for share in LARGER_SHARES], progress=progress)
+            fit = min(fit, larger, key=lambda f: f.cost)
     return _result(problem, problem.return_to_prior(fit))
 
 
@@ -83,19 +90,29 @@ def _names(what: str, given: Sequence[str]) -> tuple[str, ...]:
     return tuple(given)
 
 
-def _problem(case: Case, effects: Sequence[str]) -> Problem:
-    """The fit of the case's simulator with `effects` added, under the sensors' noise."""
+def _problem(case: Case, effects: Sequence[str], share: float) -> Problem:
+    """The fit of the case's simulator with `effects` added, under the sensors' noise. They start at a `share` of their
+    typical size."""
     system = case.system
     added = [name for name in effects if name not in system.effects]
     grown = system.with_effects({name: start_of(system, name, case.scales) for name in added})
-    new = {name for effect in added for name in grown.info.effect(effect).parameters}
     problem = pose(case, white(case.noise), grown, added=added)
-    begun = {f.name: START_SHARE * f.scale for f in problem.free if f.name in new and _is_amplitude(grown, f.name)}
+    begun = {f.name: share * f.scale for f in _amplitudes(problem)}
+    bounds = {name: grown.info.parameter(name) for name in begun}
+    begun = {name: min(max(value, bounds[name].lower), bounds[name].upper) for name, value in begun.items()}
     return problem.at(grown.with_parameters(begun), ())
 
 
-def _is_amplitude(system: System, name: str) -> bool:
-    return system.info.parameter(name).amplitude
+def _amplitudes(problem: Problem) -> list[_core.Free]:
+    """Those of the effects that were added to the case's simulator."""
+    info, own = problem.system.info, problem.case.system.effects
+    new = {name for e in problem.system.effects if e not in own for name in info.effect(e).parameters}
+    return [f for f in problem.free if f.name in new and info.parameter(f.name).amplitude]
+
+
+def _vanished(problem: Problem, fit: Fitted) -> bool:
+    """Whether nothing is left of an added effect: it may have started on the wrong side of a ridge."""
+    return any(abs(fit.system.parameters[f.name]) < VANISHED * f.scale for f in _amplitudes(problem))
 
 
 def _starts(problem: Problem, num_starts: int, rng: np.random.Generator) -> list[Problem]:
