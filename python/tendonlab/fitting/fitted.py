@@ -15,6 +15,15 @@ from tendonlab.fitting.uncertainty import Uncertainty, uncertainty
 from tendonlab.simulation.system import System
 
 
+def solved(precision: np.ndarray, push: np.ndarray) -> np.ndarray:
+    """precision^-1 push, of one matrix or of many. Where derivatives exploded, a precision may be singular in its last
+    digits; what nothing determines then stays at 0."""
+    try:
+        return np.linalg.solve(precision, push)
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(precision, hermitian=True) @ push)
+
+
 @dataclass(frozen=True)
 class Score:
     """`residual`, `jacobian`: whitened rows of one block of training experiment `experiment`, the initial state and
@@ -162,11 +171,11 @@ class Fitted:
         square = np.array([float(b.residual @ b.residual) for b in self.blocks])
         whole = self._moving_precision([])
         rest = whole - own
-        step = np.linalg.solve(rest, pull[..., None])[..., 0]
+        step = solved(rest, pull[..., None])[..., 0]
         along = pull + np.einsum("bij,bj->bi", own, step)
         square += np.einsum("bi,bi->b", pull + along, step)
         (_, volume), (_, before) = np.linalg.slogdet(whole), np.linalg.slogdet(rest)
-        settled = np.linalg.solve(whole, along.T).T
+        settled = solved(whole, along.T).T
         return np.asarray(square - np.einsum("bi,bi->b", along, settled) + volume - before)
 
     @cached_property
@@ -187,7 +196,7 @@ class Fitted:
         """How the coordinates move when some blocks are left out: one Newton step; what is at a bound stays there."""
         pull = sum(b.jacobian.T @ b.residual for b in blocks)
         step = np.zeros(len(self.x))
-        step[self._moving] = np.linalg.solve(self._moving_precision(blocks), np.asarray(pull)[self._moving])
+        step[self._moving] = solved(self._moving_precision(blocks), np.asarray(pull)[self._moving])
         return step
 
     @property

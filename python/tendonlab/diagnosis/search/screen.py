@@ -14,7 +14,7 @@ import numpy as np
 from tendonlab.diagnosis.search.swap import can_replace, extended
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.fitted import Fitted, solved
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
@@ -131,7 +131,7 @@ def _score(
     moved = _residuals_with(fitter, base, effect, values)
     directions = [(m - r) / amplitude for m, r in zip(moved, residuals, strict=True)]
     dd, dr, jd, jr = _products(base, directions)
-    imitation = np.linalg.solve(base.precision, jd)  # of the direction by the free parameters
+    imitation = solved(base.precision, jd)  # of the direction by the free parameters
     slope, curvature = float(dr - imitation @ jr), max(float(dd - imitation @ jd), 0.0)
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
     at = min(max(at, p.lower / unit), p.upper / unit)
