@@ -14,6 +14,8 @@ from tendonlab.fitting.noise import integrated_time
 from tendonlab.fitting.uncertainty import Uncertainty, uncertainty
 from tendonlab.simulation.system import System
 
+EXPLODED = 1e30  # precision of a coordinate, in units of its prior or of its size, that no measurement has
+
 
 def solved(precision: np.ndarray, push: np.ndarray) -> np.ndarray:
     """precision^-1 push, of one matrix or of many. Where derivatives exploded, a precision may be singular in its last
@@ -135,6 +137,11 @@ class Fitted:
     def precision(self) -> np.ndarray:
         """Of the coordinates, prior included."""
         return self._information + np.diag(self._prior)
+
+    @property
+    def exploded(self) -> bool:
+        """Whether the derivatives are so large that nothing follows from them."""
+        return not bool(np.all(np.abs(np.diag(self._information)) < EXPLODED))
 
     @cached_property
     def evidence(self) -> float:

@@ -66,7 +66,7 @@ def largest_gain(places: Places) -> float:
 
 def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Workshop) -> list[Place]:
     """The place of each effect of `base`: the stored contest for this effect if its companions are the same, else a new
-    one; the latest stored contest if the model cannot run without the effect."""
+    one; the latest stored contest if the model cannot run without the effect, or its derivatives explode."""
     contested = []
     for effect in base.added:
         place = places.get((frozenset(base.added) - {effect}, effect))
@@ -82,6 +82,8 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
 def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place:
     rest = tuple(name for name in base.added if name != effect)
     others = fitter.settled(fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial))
+    if others.exploded:
+        raise NumericalError(f"without {effect} the derivatives of the model explode")
     holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
     label = f"instead of {effect}"
     screened = shop.screen_all(fitter, others, label)
