@@ -56,7 +56,8 @@ def identify(
     conditions and additions, and uncertain initial states as nuisances. A parameter on which no measured sample depends
     is held at its nominal value and listed (`not_informed`). `experiments`: names, instead of the training
     ones. `num_starts`: the first from the nominal values, the others drawn from the priors with `seed`; the best is
-    kept. `tolerance`: relative error of a step of the simulation; default: the loosest at which the simulator's own
+    kept. An added effect that is gone at the end of its fit starts again, larger.
+    `tolerance`: relative error of a step of the simulation; default: the loosest at which the simulator's own
     error stays below a tenth of the sensors' noise. Ctrl-C keeps the best so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect or a
     duplicate name, NumericalError if no start can be simulated. Source: S2 sec. 4."""
