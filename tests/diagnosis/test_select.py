@@ -19,10 +19,11 @@ from tendonlab.errors import NumericalError
 FITTER: Any = SimpleNamespace(floor=SimpleNamespace(repeated=True), case=SimpleNamespace())
 
 
-def model(*added: str, evidence: float = 0.0) -> Any:
+def model(*added: str, evidence: float = 0.0, exploded: bool = False) -> Any:
     made = SimpleNamespace(
         added=added, evidence=evidence, mean_square=10.0, whitened_square=10.0, shares=(), initial=(), free=[], x=[]
     )
+    made.exploded = exploded
     made.counted = lambda *_: made
     return made
 
@@ -176,6 +177,16 @@ def test_a_rival_far_ahead_is_established_only_by_halves(
     assert found.others.added == ()
     assert ("p" in found.round.established) == established
     assert found.round.accepted is found.holder
+
+
+def test_a_model_whose_derivatives_explode_contests_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
+    fitter: Any = SimpleNamespace(
+        settled=lambda fit: fit, fit=lambda system, added, initial: model(*added, exploded=True)
+    )
+    alone = [place("a", 50.0), place("b", 60.0)]
+    shop: Any = None
+    assert contest_each_place(fitter, model("a", "b"), {p.key: p for p in alone}, shop) == alone
 
 
 def test_a_stored_contest_is_not_held_again_and_stands_in_where_a_model_fails(monkeypatch: pytest.MonkeyPatch) -> None:
