@@ -179,14 +179,29 @@ def test_a_rival_far_ahead_is_established_only_by_halves(
     assert found.round.accepted is found.holder
 
 
-def test_a_model_whose_derivatives_explode_contests_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_whose_derivatives_explode_names_no_rival(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rivals, "replace", lambda base, **_: base)
     monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
+    monkeypatch.setattr(Trial, "of", lambda effect, fitted, others: trial(effect, 100.0))
     fitter: Any = SimpleNamespace(
-        settled=lambda fit: fit, fit=lambda system, added, initial: model(*added, exploded=True)
+        floor=FITTER.floor,
+        settled=lambda fit: fit,
+        fit=lambda system, added, initial: model(*added, exploded=True),
     )
-    alone = [place("a", 50.0), place("b", 60.0)]
+    shop: Any = Shop([screened("p", 50.0)], {"p": 95.0})
+    (found,) = contest_each_place(fitter, model("holder"), {}, shop)
+    assert shop.refitted == []
+    assert found.round.accepted is found.holder
+
+
+def test_a_model_that_fails_without_a_stored_contest_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: Any) -> None:
+        raise NumericalError("no")
+
+    monkeypatch.setattr(rivals, "_contest", fails)
     shop: Any = None
-    assert contest_each_place(fitter, model("a", "b"), {p.key: p for p in alone}, shop) == alone
+    with pytest.raises(NumericalError, match="no"):
+        contest_each_place(FITTER, model("a"), {}, shop)
 
 
 def test_a_stored_contest_is_not_held_again_and_stands_in_where_a_model_fails(monkeypatch: pytest.MonkeyPatch) -> None:

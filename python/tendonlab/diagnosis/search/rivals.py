@@ -66,7 +66,7 @@ def largest_gain(places: Places) -> float:
 
 def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Workshop) -> list[Place]:
     """The place of each effect of `base`: the stored contest for this effect if its companions are the same, else a new
-    one; the latest stored contest if the model cannot run without the effect, or its derivatives explode."""
+    one; the latest stored contest if the model cannot run without the effect."""
     contested = []
     for effect in base.added:
         place = places.get((frozenset(base.added) - {effect}, effect))
@@ -74,7 +74,10 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
             try:
                 place = _contest(fitter, base, effect, shop)
             except (NumericalError, ParameterError):
-                place = next(places[key] for key in reversed(list(places)) if key[1] == effect)
+                stored = [stored for key, stored in places.items() if key[1] == effect]
+                if not stored:
+                    raise
+                place = stored[-1]
         contested.append(place)
     return contested
 
@@ -82,11 +85,9 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
 def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place:
     rest = tuple(name for name in base.added if name != effect)
     others = fitter.settled(fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial))
-    if others.exploded:
-        raise NumericalError(f"without {effect} the derivatives of the model explode")
     holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
     label = f"instead of {effect}"
-    screened = shop.screen_all(fitter, others, label)
+    screened = [] if others.exploded else shop.screen_all(fitter, others, label)  # nothing follows from such slopes
     promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
     trials = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
 
