@@ -265,7 +265,7 @@ def simulate_many(
 ) -> list[str]: ...
 def balance(
     kind: str,
-    values: Sequence[float],
+    values: Floats,
     active: Sequence[bool],
     experiment: Experiment,
     position: Floats,
@@ -286,6 +286,17 @@ class Whitening:
     def apply(self, signals: Floats) -> Floats: ...
     def apply_many(self, signals: Floats) -> Floats: ...
     def residual(self, outputs: Floats) -> Floats: ...
+
+def regress(
+    residual: Floats,
+    columns: Floats,
+    belief: Floats,
+    logarithm: Sequence[bool],
+    positive: Sequence[bool],
+    share: Floats,
+    level: Floats,
+    steps: int,
+) -> dict[str, Any]: ...
 
 class RandomEffect:
     def __init__(self, directions: Floats) -> None: ...

@@ -53,8 +53,7 @@ def test_a_nudge_changes_its_parameter_alone(equation: Equation) -> None:
     logs = exact()
     names = [p.name for p in equation.system.info.parameters]
     stretches = equation.along(logs)
-    before = equation.evaluate(stretches, len(TIME))
-    heavier = equation.evaluate(stretches, len(TIME), parameter=names.index("inertia"), nudge=0.01)
+    before, heavier = equation.nudged(stretches, len(TIME), {names.index("inertia"): 0.01})
     np.testing.assert_allclose((heavier - before)[0], 0.01 * logs.moving["joint_angle"][2], atol=1e-9)
 
 
@@ -146,7 +145,7 @@ def test_conditions_that_differ_are_evaluated_apart(tmp_path: Path) -> None:
     q = both.moving["joint_angle"][0]
     np.testing.assert_allclose(left[: len(TIME)] - left[len(TIME) :], GRAVITY * np.sin(q), atol=1e-9)
     index = [p.name for p in of.system.info.parameters].index("gravity_torque")
-    (nudged,) = of.evaluate(of.along(twice), len(run), parameter=index, nudge=0.1)
+    _, (nudged,) = of.nudged(of.along(twice), len(run), {index: 0.1})
     np.testing.assert_allclose(nudged - left, np.where(run == 0, 0.0, 0.1 * np.tile(np.sin(q), 2)), atol=1e-9)
 
 

@@ -9,7 +9,7 @@ from tendonlab.checking.factors import _hint, factor_findings
 from tendonlab.checking.regression import Fit
 from tendonlab.checking.scales import Factor, _blocks
 
-FIT = Fit(0.0, np.zeros(0), np.zeros(0), np.zeros(1), np.zeros((1, 1)), 0.0)
+FIT = Fit(0.0, np.zeros(0), np.zeros(0), np.zeros(1), np.zeros((1, 1)), np.ones((1, 1)), 0.0)
 
 
 @pytest.fixture(scope="module")

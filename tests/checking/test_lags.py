@@ -22,14 +22,11 @@ def test_the_step_is_that_of_all_unknowns_at_once() -> None:
     unknowns = (Unknown("a", sd=0.5), Unknown("b", sd=0.2, logarithm=True))
     at, x = Terms(residual, columns, unknowns, np.array([2.0, 3.0])), np.array([0.1, -0.3])
     level, share = np.sqrt(np.mean(np.square(residual / at.size[:, None]), axis=1)), np.array([0.5, 0.2])
-    fit = Fit(0.0, x, np.ones(2), level, residual, 0.0)
+    weight = (FREEDOM + 1) / (FREEDOM + (residual / at.size[:, None] / level[:, None]) ** 2)
+    fit = Fit(0.0, x, np.ones(2), level, residual, weight, 0.0)
     step, sd = _steps(at, fit, own, own_belief, run, share)
 
-    scale = level.copy()
-    for _ in range(3):  # the scale of Student's t, as of the fit
-        weight = (FREEDOM + 1) / (FREEDOM + (residual / at.size[:, None] / scale[:, None]) ** 2)
-        scale = np.sqrt(np.mean(weight * (residual / at.size[:, None]) ** 2, axis=1))
-    root = np.sqrt(weight * share[:, None]) / scale[:, None] / at.size[:, None]
+    root = np.sqrt(weight * share[:, None]) / level[:, None] / at.size[:, None]
     rows = [(columns[0] * root).ravel(), (columns[1] * np.exp(x[1]) * root).ravel()]
     rows += [(own[k] * root * (run == i)).ravel() for i in range(3) for k in range(2)]
     matrix = np.array(rows).T

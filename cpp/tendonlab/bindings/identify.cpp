@@ -5,6 +5,7 @@
 #include "tendonlab/bindings/record.hpp"
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/identify/fit.hpp"
+#include "tendonlab/identify/regression.hpp"
 
 namespace tendonlab::bindings {
 namespace {
@@ -144,6 +145,41 @@ void bind_random_effect(py::module_& module) {
       .def_property_readonly("volume", &identify::RandomEffect::volume, "log det(I + V V').");
 }
 
+py::dict regress(const Signals& residual, const Signals& columns, const std::vector<double>& belief,
+                 const std::vector<bool>& logarithm, const std::vector<bool>& positive, const Eigen::VectorXd& share,
+                 const Eigen::VectorXd& level, int steps) {
+  const auto require = [](std::string_view name, auto size, auto expected) {
+    if (static_cast<Eigen::Index>(size) != static_cast<Eigen::Index>(expected))
+      throw ParameterError(sentence(name, " of size ", size, ": expected ", expected));
+  };
+  require("columns: rows", columns.cols(), residual.size());
+  require("belief", belief.size(), columns.rows());
+  require("logarithm", logarithm.size(), columns.rows());
+  require("positive", positive.size(), columns.rows());
+  require("share", share.size(), residual.rows());
+  require("level", level.size(), residual.rows());
+  identify::Regression of{residual, columns, {}, share};
+  for (std::size_t i = 0; i < belief.size(); ++i) of.unknowns.push_back({belief[i], logarithm[i], positive[i]});
+  identify::Regressed found;
+  {
+    py::gil_scoped_release release;
+    found = identify::regress(of, level, steps);
+  }
+  return py::dict(py::arg("finite") = found.finite, py::arg("x") = found.x, py::arg("level") = found.level,
+                  py::arg("residual") = found.residual, py::arg("weight") = found.weight,
+                  py::arg("information") = found.information);
+}
+
+void bind_regression(py::module_& module) {
+  module.def("regress", &regress, py::arg("residual"), py::arg("columns"), py::arg("belief"), py::arg("logarithm"),
+             py::arg("positive"), py::arg("share"), py::arg("level"), py::arg("steps"),
+             "Most probable x for residual (equations, samples) + amounts of columns (unknowns, equations*samples) =\n"
+             "Student-t noise of 4 degrees of freedom. belief: 1/sd^2 of each x about 0; logarithm: the amount is\n"
+             "exp(x) - 1; positive: x cannot be negative; share: of the samples of an equation that count as\n"
+             "independent; level: first guess of each scale. A dict: finite, x, level (equations,), residual and\n"
+             "weight (equations, samples), information (unknowns, unknowns).");
+}
+
 void bind_problem(py::module_& module) {
   py::class_<Cancel>(module, "Cancel", "Stops the fits that it was given to, from any thread.")
       .def(py::init<>())
@@ -187,6 +223,7 @@ void bind_problem(py::module_& module) {
 void bind_identify(py::module_& module) {
   bind_whitening(module);
   bind_random_effect(module);
+  bind_regression(module);
   bind_problem(module);
   module.def(
       "linearise",

@@ -75,24 +75,33 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
   return out;
 }
 
-py::dict balance(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
+/// Rows of values: the equation of motion with each.
+py::dict balance(const std::string& kind, const Array& values, const std::vector<bool>& active,
                  const Experiment& experiment, const Array& position, const Array& velocity) {
   const Model& of = model(kind);
-  const Configuration configuration = make_configuration(of, values, active);
+  const auto width = static_cast<py::ssize_t>(of.info().parameters.size());
+  if (values.ndim() != 2 || values.shape(1) != width)
+    throw ParameterError(sentence("values with ", values.ndim(), " dimensions: expected shape (m, ", width, ")"));
   const integrate::MeasuredMotion motion{{position.data(), position.data() + position.size()},
                                          {velocity.data(), velocity.data() + velocity.size()}};
-  integrate::Balance found;
+  std::vector<integrate::Balance> found;
   {
     py::gil_scoped_release release;
-    found = of.balance(configuration, experiment, motion);
+    for (py::ssize_t k = 0; k < values.shape(0); ++k) {
+      const std::vector<double> row(values.data() + k * width, values.data() + (k + 1) * width);
+      found.push_back(of.balance(make_configuration(of, row, active), experiment, motion));
+    }
   }
   const auto samples = static_cast<py::ssize_t>(experiment.time.size());
-  const auto rows = [&](std::vector<double>& of_all) {
-    const auto count = static_cast<py::ssize_t>(of_all.size()) / samples;
-    return to_array(std::move(of_all), {count, samples});
+  const auto rows = [&](std::vector<double> integrate::Balance::*part) {
+    std::vector<double> of_all;
+    for (const auto& one : found) of_all.insert(of_all.end(), (one.*part).begin(), (one.*part).end());
+    const auto count = found.empty() ? 0 : static_cast<py::ssize_t>((found[0].*part).size()) / samples;
+    return to_array(std::move(of_all), {values.shape(0), count, samples});
   };
   py::dict out;
-  out["effort"] = rows(found.effort), out["inertia"] = rows(found.inertia), out["outputs"] = rows(found.output);
+  out["effort"] = rows(&integrate::Balance::effort), out["inertia"] = rows(&integrate::Balance::inertia);
+  out["outputs"] = rows(&integrate::Balance::output);
   return out;
 }
 /// What `simulate` is asked.
@@ -162,9 +171,10 @@ void bind_systems(py::module_& module) {
   module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
              py::arg("seeds"), py::arg("settings"),
              "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, 4, samples).");
-  module.def("balance", &balance, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
-             py::arg("position"), py::arg("velocity"),
-             "The equation of motion along a measured motion (dof, samples): what acts on each degree of freedom, its "
-             "inertia (dof, samples), and the outputs (channels, samples).");
+  module.def(
+      "balance", &balance, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
+      py::arg("position"), py::arg("velocity"),
+      "The equation of motion along a measured motion (dof, samples), for each of m rows of values: what acts on "
+      "each degree of freedom, its inertia (m, dof, samples), and the outputs (m, channels, samples).");
 }
 }  // namespace tendonlab::bindings

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -60,13 +60,16 @@ class Equation:
         """The simulator in each experiment."""
         return tuple(Conditions.of(self, e) for e in self.dataset.experiments)
 
-    def evaluate(
-        self, stretches: Sequence[Stretch], samples: int, *, parameter: int = -1, nudge: float = 0.0
-    ) -> np.ndarray:
-        """Every equation (equations, samples), with a `nudge` to the parameter of that index."""
-        found = np.empty((len(self.predicted), samples))
+    def evaluate(self, stretches: Sequence[Stretch], samples: int) -> np.ndarray:
+        """Every equation (equations, samples)."""
+        return np.asarray(self.nudged(stretches, samples, {})[0])
+
+    def nudged(self, stretches: Sequence[Stretch], samples: int, nudges: Mapping[int, float]) -> np.ndarray:
+        """Every equation as it is, and after each nudge, {index of a parameter: by how much} (1 + nudges, equations,
+        samples)."""
+        found = np.empty((1 + len(nudges), len(self.predicted), samples))
         for stretch in stretches:
-            found[:, stretch.own] = stretch.missing(self, parameter, nudge)
+            found[..., stretch.own] = stretch.missing(self, nudges)
         return found
 
     @cached_property
@@ -143,17 +146,18 @@ class Stretch:
         position[axis] += by
         return replace(self, position=position)
 
-    def missing(self, equation: Equation, parameter: int, nudge: float) -> np.ndarray:
-        """What the efforts lack to balance (equations, samples)."""
-        values = self.under.values
-        if parameter >= 0 and parameter not in self.under.fixed:
-            values = [*values[:parameter], values[parameter] + nudge, *values[parameter + 1 :]]
+    def missing(self, equation: Equation, nudges: Mapping[int, float]) -> np.ndarray:
+        """What the efforts lack to balance, with no nudge and with each (1 + nudges, equations, samples)."""
+        values = np.tile(self.under.values, (1 + len(nudges), 1))
+        for row, (parameter, by) in enumerate(nudges.items(), start=1):
+            if parameter not in self.under.fixed:
+                values[row, parameter] += by
         kind = equation.system.kind
         found = _core.balance(kind, values, self.under.active, self.core, self.position, self.velocity)
         missing = found["inertia"] * self.acceleration - found["effort"]
-        seen = found["outputs"][list(equation.places)]
-        together = (self.under.shape @ missing)[None]
-        return np.concatenate([together, missing[list(equation.separate)], self.rest - seen])
+        seen = found["outputs"][:, list(equation.places)]
+        together = np.tensordot(missing, self.under.shape, axes=(1, 0))[:, None]
+        return np.concatenate([together, missing[:, list(equation.separate)], self.rest - seen], axis=1)
 
 
 def _motion(

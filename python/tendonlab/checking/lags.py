@@ -8,7 +8,7 @@ import numpy as np
 
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import Logs
-from tendonlab.checking.regression import Fit, scale_and_weight
+from tendonlab.checking.regression import Fit
 from tendonlab.checking.scales import ROUGH_SHARE, shares
 from tendonlab.checking.terms import Terms, terms
 
@@ -100,8 +100,7 @@ def _steps(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The Gauss-Newton step of what each experiment has of its own, together with the parameters, which all share; and
     the sd of each. `slopes`: what the equations change with them (unknowns, equations, samples)."""
-    level, weight = scale_and_weight(fit.residual / at.size[:, None], fit.level)
-    root = np.sqrt(weight * (share / level**2)[:, None]) / at.size[:, None]
+    root = np.sqrt(fit.weight * (share / fit.level**2)[:, None]) / at.size[:, None]
     shared, own, left = at.slopes(fit.x) * root, slopes * root, fit.residual * root
     belief = np.array([1.0 / u.sd**2 for u in at.unknowns])
     information, gradient = np.diag(belief), belief * fit.x

@@ -46,27 +46,40 @@ class Terms:
 @np.errstate(all="ignore")  # wrong logs may lead anywhere; what has no value is left out
 def terms(equation: Equation, logs: Logs) -> Terms:
     """The regression of `equation` on `logs`."""
-    stretches = equation.along(logs)
-    residual = equation.evaluate(stretches, len(logs.run))
+    stretches, num = equation.along(logs), len(logs.run)
+    free = _free(equation)
+    nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items() if not _is_gain(p, stated)}
+    residual, *moved = equation.nudged(stretches, num, nudges)
     zeros, stiffness = _zeros(equation, logs, stretches, residual)
-    silent = equation.evaluate([s.without_inputs(equation.system) for s in stretches], len(logs.run))
+    silent = equation.evaluate([s.without_inputs(equation.system) for s in stretches], num)
     size = _size(equation, logs, residual, silent, stiffness)
-    rows: list[Column] = []
-    for k, p in enumerate(equation.system.info.parameters):
-        stated = equation.dataset.parameters.get(p.name)
-        if stated is None or p.name not in equation.system.parameters or not _is_free(p, stated):
-            continue
-        if p.role == "command_gain" and stated.value:
-            rows.append(_gain(p, stated, residual, silent))
-            continue
-        nudge = NUDGE * (abs(stated.value) or abs(p.typical) or 1.0)
-        nudge = nudge if stated.value + nudge <= p.upper else -nudge
-        moved = equation.evaluate(stretches, len(logs.run), parameter=k, nudge=nudge)
-        rows.append(_believed(p, stated, (moved - residual) / nudge / size[:, None], size))
+    rows = [_gain(p, stated, residual, silent) for p, stated in free.values() if _is_gain(p, stated)]
+    for (k, nudge), after in zip(nudges.items(), moved, strict=True):
+        rows.append(_believed(*free[k], (after - residual) / nudge / size[:, None], size))
     rows += [*zeros, *_extras(equation, logs, size)]
     seen = [(u, c) for u, c in rows if np.any(c) and np.isfinite(c).all()]
     columns = np.array([c for _, c in seen]).reshape(len(seen), *residual.shape)
     return Terms(residual, columns, tuple(u for u, _ in seen), size)
+
+
+def _free(equation: Equation) -> dict[int, tuple[ParameterInfo, NominalParameter]]:
+    """The parameters that may differ from their nominal values, by their index."""
+    stated = [(p, equation.dataset.parameters.get(p.name)) for p in equation.system.info.parameters]
+    return {
+        k: (p, nominal)
+        for k, (p, nominal) in enumerate(stated)
+        if nominal is not None and p.name in equation.system.parameters and _is_free(p, nominal)
+    }
+
+
+def _nudge(p: ParameterInfo, stated: NominalParameter) -> float:
+    """A small change of a parameter, within its bounds."""
+    nudge = NUDGE * (abs(stated.value) or abs(p.typical) or 1.0)
+    return nudge if stated.value + nudge <= p.upper else -nudge
+
+
+def _is_gain(p: ParameterInfo, stated: NominalParameter) -> bool:
+    return p.role == "command_gain" and stated.value != 0.0
 
 
 def _gain(p: ParameterInfo, stated: NominalParameter, residual: np.ndarray, silent: np.ndarray) -> Column:
