@@ -11,11 +11,12 @@ The twin shares no law and no stepper with the library. Reconstructed: these are
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
-from scipy.integrate import solve_ivp
+from scipy.integrate import ODEintWarning, odeint
 
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.papers.s3.rig import DEGREE, FrictionParameters, Rig, assumed_rig, paper_parameters
@@ -24,6 +25,7 @@ from tendonlab.papers.s3.trajectories import Trajectory
 from tendonlab.procedures.sheath_shape import Shape
 
 TORQUE_NOISE_SD, VELOCITY_NOISE_SD = 0.15, 0.05  # N·m; deg/s
+MOST_STEPS = 100_000  # of the integrator from one sample to the next
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,21 +75,22 @@ class Chain:
         rtol: float = 1e-6,
         atol: float = 1e-9,
         longest_step: float = 0.02,
-        method: str = "LSODA",
     ) -> pd.DataFrame:
         """From rest under `trajectory` for `duration`, s: a frame by time "t", s, with `tau_in` and `tau_out`, N·m, and
-        `v`, deg/s, of motor A; `tau_out` and `v` with noise unless `seed` is None. `method`: a stiff one of scipy
-        ("LSODA" is its backward differences in compiled code, three times as fast as "BDF").
-        Raises NumericalError where the integration fails."""
+        `v`, deg/s, of motor A; `tau_out` and `v` with noise unless `seed` is None. By scipy's
+        LSODA. Raises NumericalError where the integration fails."""
         time = np.arange(round(duration * sample_rate)) / sample_rate
         equations = ChainEquations.of(self, trajectory)
-        run = solve_ivp(
-            equations.rate, (0.0, time[-1]), np.zeros(equations.size), method=method, t_eval=time, rtol=rtol, atol=atol,
-            max_step=longest_step, jac=equations.jacobian,
-        )  # fmt: skip
-        if not run.success:
-            raise NumericalError(f"the chain could not be integrated under {trajectory}: {run.message}")
-        columns = {"tau_in": trajectory.torque(time), "v": run.y[1] / DEGREE, "tau_out": equations.stretch(run.y)[-1]}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ODEintWarning)  # said by the error below
+            states, report = odeint(
+                equations.rate, np.zeros(equations.size), time, Dfun=equations.jacobian, tfirst=True, rtol=rtol,
+                atol=atol, hmax=longest_step, mxstep=MOST_STEPS, full_output=True,
+            )  # fmt: skip
+        if report["message"] != "Integration successful.":
+            raise NumericalError(f"the chain could not be integrated under {trajectory}: {report['message']}")
+        end = states @ equations.stretching[-1]
+        columns = {"tau_in": trajectory.torque(time), "v": states[:, 1] / DEGREE, "tau_out": end}
         log = pd.DataFrame(columns, index=pd.Index(time, name="t"))
         return log if seed is None else with_noise(log, seed=seed)
 
@@ -136,16 +139,10 @@ class ChainEquations:
     def size(self) -> int:
         return 2 * self.chain.num_nodes + 4
 
-    def stretch(self, y: np.ndarray) -> np.ndarray:
-        """e_0 … e_n, N·m; of many states, (size, m), too."""
-        n = self.chain.num_nodes
-        q = np.concatenate([y[:1], y[2 : n + 2], y[-2:-1]])
-        return np.asarray(self.stiffness * (q[:-1] - q[1:]))
-
     def nodes(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Torques e, friction levels F, speeds v of the nodes, and their bristles z."""
         n = self.chain.num_nodes
-        e, z = self.stretch(y), y[n + 2 : 2 * n + 2]
+        e, z = self.stretching @ y, y[n + 2 : 2 * n + 2]
         level = np.maximum(self.level, np.abs(e[:-1]) * self.share) if self.chain.slack else self.level
         if self.chain.tension_drop:
             level = level - self.drop @ (z / self.chain.bristle_length * 0.5 * (e[:-1] + e[1:]))
