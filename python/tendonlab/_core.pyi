@@ -51,6 +51,7 @@ class InputInfo:
     between: Final[str]
     replaced_by: Final[str | None]
     warn_if_absent: Final[bool]
+    limit: Final[bool]
 
 class OutputInfo:
     name: Final[str]

@@ -35,7 +35,8 @@ void bind_signals(py::module_& module) {
        field("between", &Input::between, "Between its samples: \"hold\", \"linear\" or \"smooth\"."),
        field("replaced_by", &Input::replacement, "Input that takes its place where that one is logged.", ""),
        field("warn_if_absent", &Input::warns_if_absent,
-             "Optional, but warn that it is taken as 0 where a measured output depends on it.")});
+             "Optional, but warn that it is taken as 0 where a measured output depends on it."),
+       field("limit", &Input::is_limit, "Does it bound the command?")});
   bind_record<Output>(
       module, "OutputInfo", "An output of a system.",
       {field("name", &Output::name, "Name of the signal."), field("meaning", &Output::meaning, "What it is."),

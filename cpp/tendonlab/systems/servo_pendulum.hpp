@@ -19,7 +19,8 @@ struct ServoPendulum : SystemDefaults {
   static constexpr bool joined[1][1] = {{true}};
   static constexpr std::array inputs{
       input("target_angle", Dimension::displacement, Between::hold, "position that the servo is to take").required(),
-      input("supply_voltage", Dimension::voltage, Between::linear, "largest voltage, in place of voltage_limit"),
+      input("supply_voltage", Dimension::voltage, Between::linear, "largest voltage, in place of voltage_limit")
+          .limit(),
       input("torque_enable", Dimension::ratio, Between::hold,
             "whether the servo drives (1) or coasts (0), 1 unless logged")};
   static constexpr std::array outputs{

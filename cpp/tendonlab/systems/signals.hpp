@@ -25,6 +25,7 @@ struct Input {
   bool is_required = false;
   std::string_view replacement = {};  ///< an input that takes the place of this one where it was logged
   bool warns_if_absent = false;
+  bool is_limit = false;  ///< it bounds the command: nothing changes with it where the command stays within
 
   constexpr Input required() const {
     Input i = *this;
@@ -34,6 +35,11 @@ struct Input {
   constexpr Input replaced_by(std::string_view other) const {
     Input i = *this;
     i.replacement = other;
+    return i;
+  }
+  constexpr Input limit() const {
+    Input i = *this;
+    i.is_limit = true;
     return i;
   }
   /// Where it was not logged although a measured output depends on it, users are warned that it is taken as 0.

@@ -65,9 +65,10 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
 
 
 def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
-    """Sets of channels that may share a factor, with its sign."""
+    """Sets of channels that may share a factor, with its sign. A limit is no suspect: what it does not bound says
+    nothing of its size."""
     info, known = equation.system.info, equation.dataset.signals
-    inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio"]
+    inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio" and not s.limit]
     axes = tuple(equation.axes.values())
     sets = [(name,) for name in (*inputs, *axes, *equation.others)] + ([axes] if len(axes) > 1 else [])
     for signals in sets:

@@ -17,6 +17,7 @@ from tendonlab.simulation.catalog import ParameterInfo
 NUDGE = 1e-3  # relative change by which a column is found
 EXTRA = 0.3  # of the rms that an equation predicts: sd of offsets, and of friction that the simulator may lack
 OFFSET = 0.1  # of the travel: sd of the zero of an angle
+LEAST_POWER = 0.01  # to which a parameter must raise what the inputs contribute, to count as a gain
 
 Column = tuple[Unknown, np.ndarray]
 
@@ -48,14 +49,16 @@ def terms(equation: Equation, logs: Logs) -> Terms:
     """The regression of `equation` on `logs`."""
     stretches, num = equation.along(logs), len(logs.run)
     free = _free(equation)
-    nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items() if not _is_gain(p, stated)}
+    nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items()}
     residual, *moved = equation.nudged(stretches, num, nudges)
+    silent, *moved_silent = equation.nudged([s.without_inputs(equation.system) for s in stretches], num, nudges)
     zeros, stiffness = _zeros(equation, logs, stretches, residual)
-    silent = equation.evaluate([s.without_inputs(equation.system) for s in stretches], num)
     size = _size(equation, logs, residual, silent, stiffness)
-    rows = [_gain(p, stated, residual, silent) for p, stated in free.values() if _is_gain(p, stated)]
-    for (k, nudge), after in zip(nudges.items(), moved, strict=True):
-        rows.append(_believed(*free[k], (after - residual) / nudge / size[:, None], size))
+    rows = []
+    for (k, nudge), after, after_silent in zip(nudges.items(), moved, moved_silent, strict=True):
+        slope, driven = (after - residual) / nudge, residual - silent
+        grown = (after - after_silent - driven) / nudge
+        rows.append(_gain(*free[k], residual, slope, driven, grown) or _believed(*free[k], slope / size[:, None], size))
     rows += [*zeros, *_extras(equation, logs, size)]
     seen = [(u, c) for u, c in rows if np.any(c) and np.isfinite(c).all()]
     columns = np.array([c for _, c in seen]).reshape(len(seen), *residual.shape)
@@ -78,16 +81,25 @@ def _nudge(p: ParameterInfo, stated: NominalParameter) -> float:
     return nudge if stated.value + nudge <= p.upper else -nudge
 
 
-def _is_gain(p: ParameterInfo, stated: NominalParameter) -> bool:
-    return p.role == "command_gain" and stated.value != 0.0
-
-
-def _gain(p: ParameterInfo, stated: NominalParameter, residual: np.ndarray, silent: np.ndarray) -> Column:
-    """The gain of the command: its inverse scales all else, so that residuals stay in the unit of what was logged. If
-    it scaled the command, the least gain would leave the least residual."""
-    driven = np.any(residual != silent, axis=1)[:, None]
-    sd = LOG_SD if stated.sd is None else stated.sd / abs(stated.value)
-    return Unknown(p.name, sd=sd, logarithm=True), np.where(driven, silent, 0.0)
+def _gain(
+    p: ParameterInfo,
+    stated: NominalParameter,
+    residual: np.ndarray,
+    slope: np.ndarray,
+    driven: np.ndarray,
+    grown: np.ndarray,
+) -> Column | None:
+    """A parameter that scales what the inputs contribute: it scales all else inversely, so that residuals stay in the
+    unit of what was logged. If it scaled the inputs, the least gain would leave the least residual. `slope`, `grown`:
+    how the residual and what the inputs contribute, `driven`, change with it. None for any other parameter."""
+    square = float(np.sum(driven**2))
+    power = float(np.sum(grown * driven)) * stated.value / square if square > 0 else 0.0
+    if abs(power) < LEAST_POWER:
+        return None
+    acts = np.any(driven, axis=1)[:, None]
+    column = np.where(acts, power * residual, 0.0) - slope * stated.value
+    sd = _default_sd(p) if stated.sd is None else stated.sd / abs(stated.value)
+    return Unknown(p.name, sd=sd, logarithm=True), column * np.sign(power)
 
 
 def _size(
@@ -126,13 +138,16 @@ def _is_free(p: ParameterInfo, stated: NominalParameter) -> bool:
 def _believed(p: ParameterInfo, stated: NominalParameter, slope: np.ndarray, size: np.ndarray) -> Column:
     """What is believed of a parameter: of its logarithm where it cannot be negative, as in a fit. `slope` is relative
     to the equations' `size`."""
-    default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
     scale = abs(stated.value) or EXTRA / (float(np.max(np.sqrt(np.mean(slope**2, axis=1)))) or 1.0)
-    sd = default if stated.sd is None else stated.sd / scale
+    sd = _default_sd(p) if stated.sd is None else stated.sd / scale
     if not stated.value:
         sd = 1.0 if stated.sd is None else sd
         return Unknown(p.name, sd=sd, positive=p.lower >= 0), slope * scale * size[:, None]
     return Unknown(p.name, sd=sd, logarithm=p.lower >= 0 and stated.value > 0), slope * scale * size[:, None]
+
+
+def _default_sd(p: ParameterInfo) -> float:
+    return DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
 
 
 def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column]:
