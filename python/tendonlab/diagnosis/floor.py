@@ -40,7 +40,9 @@ def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fi
     if fitter.floor.repeated:
         return fitter, model
     model = fitter.settled(model)
-    return replace(fitter.left_by(model), seen=_sensitivities(fitter.case, model, pool)), model
+    under = fitter.left_by(model)
+    model = under.settled(under.fit(model.system, added=model.added, initial=model.initial))
+    return replace(under.left_by(model), seen=_sensitivities(fitter.case, model, pool)), model
 
 
 def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list[Sensitivities]:

@@ -133,13 +133,14 @@ class Case:
         settings = self.settings(ports=ports)
         return dict(_core.simulate(system.kind, values, active, self.started(i, own), list(seeds), settings))
 
-    def task(self, i: int, whitening: _core.Whitening, system: System) -> _core.Task:
-        """Experiment i for the compiled fit of `system`, whose own parameters differ from run to run."""
+    def task(self, i: int, whitening: _core.Whitening, system: System, *, tightness: float = 1.0) -> _core.Task:
+        """Experiment i for the compiled fit of `system`, whose own parameters differ from run to run. `tightness`: by
+        which the sd of the experiment's own unknowns is multiplied."""
         ready = self.prepared[i]
         fixed, added = self._conditions(i)
         names = [p.name for p in system.info.parameters]
-        scatter = [([k for k in group if names[k] in system.parameters], sd) for group, sd in self.scatter]
-        initial, sd = list(ready.initial), list(ready.initial_sd)
+        scatter = [([k for k in group if names[k] in system.parameters], tightness * sd) for group, sd in self.scatter]
+        initial, sd = list(ready.initial), [tightness * sd for sd in ready.initial_sd]
         return _core.Task(
             ready.core, whitening, fixed=fixed, added=added, initial=initial, initial_sd=sd, scatter=scatter
         )

@@ -153,7 +153,19 @@ class Fitted:
         sd = np.array([f.sd if np.isfinite(f.sd) else 1e3 for f in self.free])
         _, volume = np.linalg.slogdet(np.eye(len(sd)) + sd[:, None] * self._information * sd)
         own = sum(of.effect.volume for of in self.marginals)
-        return float(-0.5 * (misfit + np.sum(away) + volume + own))
+        return float(-0.5 * (misfit + np.sum(away) + volume + own)) + self._overpaid
+
+    @property
+    def _overpaid(self) -> float:
+        """Nats by which a fit that counts all rows goes too far from what was believed, where the rows count as fewer:
+        what a Newton step back wins, at most by a factor e in each parameter."""
+        moving, share = self._moving, float(np.mean(self.shares[self.levels > 0]))
+        pull = ((1.0 - share) * self._prior * (self.x - np.array([f.mean for f in self.free])))[moving]
+        if share == 1.0 or not moving.any():
+            return 0.0
+        back = solved(self._moving_precision([]), pull)
+        part = 1.0 / max(1.0, float(np.max(np.abs(back))))
+        return float(part * (1.0 - 0.5 * part) * (pull @ back))
 
     @cached_property
     def left_out(self) -> np.ndarray:
@@ -230,6 +242,13 @@ class Fitted:
             return sum(float(b.residual @ b.residual) for b in self.blocks) / rows
         scale = self.levels / np.where(self.known > 0, self.known, 1.0)
         return float(np.mean(np.square(np.concatenate([run.residual * scale[run.output] for run in self.runs]))))
+
+    @property
+    def exceeds_scatter(self) -> bool:
+        """Whether it leaves more than the known noise and what runs differ by, their friction and initial states."""
+        scale = np.square(self.levels / np.where(self.known > 0, self.known, 1.0))
+        scatter = [scale[run.output] * np.sum(np.square(run.by_own), axis=1) for run in self.runs]
+        return self.mean_square > 1.0 + float(np.mean(np.concatenate(scatter)))
 
     @cached_property
     def whitened_square(self) -> float:

@@ -26,7 +26,8 @@ class Floor:
     `rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and innovation
     sd of each output (sd 0: not measured). `tau`: relative sd of friction from run to run. `repeated`: whether repeats
     say so; without them `sd` is what a model leaves, of which `known` is due to the sensors. `shares`: share of the
-    whitened samples of each output that count as independent; decisions weigh them by it, fits do not."""
+    whitened samples of each output that count as independent; decisions weigh them by it. Fits count all samples, and
+    believe in the own unknowns of each experiment as much more firmly."""
 
     rms: np.ndarray
     ar: list[list[float]]
@@ -40,6 +41,13 @@ class Floor:
     def levels(self) -> np.ndarray:
         """Sd of each output, 0 where it was not measured."""
         return np.array(self.sd, dtype=float)
+
+    @property
+    def share(self) -> float:
+        """Share of all whitened samples that count as independent."""
+        if self.shares is None:
+            return 1.0
+        return float(np.mean([share for share, sd in zip(self.shares, self.sd, strict=True) if sd > 0]))
 
     def left_by(self, levels: np.ndarray, shares: np.ndarray) -> Floor:
         """The floor where a model leaves residuals of these levels."""

@@ -74,9 +74,18 @@ class Problem:
             known = seen_there
         return replace(fit, informed=tuple(known.tolist()))
 
+    @property
+    def tightness(self) -> float:
+        """Factor on the sd of the experiments' own unknowns. Where n samples count as one, all of them together would
+        push friction n times as far from run to run as the one allows, to imitate what the model lacks."""
+        return float(np.sqrt(self.floor.share))
+
     def _stated(self) -> tuple[Any, ...]:
         system, case = self.system, self.case
-        tasks = [case.task(i, self.floor.whitening(case.prepared[i].measured), system) for i in case.train]
+        tasks = [
+            case.task(i, self.floor.whitening(case.prepared[i].measured), system, tightness=self.tightness)
+            for i in case.train
+        ]
         flags = system.active(keep_zero=True)
         return system.kind, system.values(), flags, tasks, self.free, case.settings()
 
@@ -107,7 +116,7 @@ class Problem:
         return Run(
             residual=solved["residuals"][t],
             jacobian=solved["jacobian"][t],
-            by_own=solved["jacobian_initial"][t],
+            by_own=solved["jacobian_initial"][t] / self.tightness,
             own=(np.array(solved["initial"][t]) - self.case.own_mean(i)) / self.case.own_sd(i),
             output=outputs,
             block=blocks_of(np.asarray(ready.core.time))[samples],

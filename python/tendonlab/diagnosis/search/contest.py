@@ -123,13 +123,15 @@ def _least_gain(base: Fitted, bar: Bar) -> float:
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:
     """Near the floor, which a few repeats determine to a few per cent, an effect must remove a share of the error that
-    matters. Near the floor and beyond the first effect, it must predict experiments that it was not fitted to."""
+    matters. Without repeats it must explain enough, or leave no more than runs differ by. Near the floor, beyond the
+    first effect and where it explains little, it must predict experiments that it was not fitted to."""
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
     if near_floor and first.mean_square > (1 - MATTERS) * base.mean_square:
         return False
-    if not fitter.floor.repeated and not _explains_enough(base, trials):
+    enough = fitter.floor.repeated or _explains_enough(base, trials)
+    if not enough and first.exceeds_scatter:
         return False
-    return not (near_floor or further) or predicts_better(fitter, base, first)
+    return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
 
 
 def _explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
