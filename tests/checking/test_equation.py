@@ -12,6 +12,7 @@ from tendonlab.checking.lags import _scanned, _slopes
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.terms import rms, terms
+from tendonlab.data import load
 
 INERTIA, GRAVITY, COULOMB, VISCOUS = 0.019, 1.15, 0.06, 0.04  # as the simulator states them
 TIME = np.arange(0.0, 6.0, 0.01)
@@ -157,3 +158,31 @@ def test_without_inputs_the_size_of_an_equation_is_what_it_leaves(equation: Equa
     assert rms(found.residual[0]) > 0.1
     still = replace(logs, moving={"joint_angle": np.zeros((3, len(TIME)))})
     assert terms(equation, still).size == pytest.approx([1.0])
+
+
+def test_a_gain_scales_all_but_what_drives(tmp_path: Path) -> None:
+    """A servo of another resistance R: the equation, divided by what the inputs contribute per volt, in volts."""
+    time = np.arange(0.0, 4.0, 0.01)
+    target = np.sin(3.0 * time)
+    angle = 0.9 * np.sin(3.0 * time - 0.2)
+    values = {
+        "inertia": 0.005, "armature": 0.003, "gravity_torque": 0.4, "torque_constant": 0.5, "resistance": 4.0,
+        "proportional_gain": 20.0, "voltage_limit": 60.0, "coulomb": 0.02, "viscous": 0.01,
+    }  # fmt: skip
+    lines = ["format = 'tendonlab-dataset/1'", "name = 'servo'", "[system]", "kind = 'servo_pendulum'"]
+    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in values.items())]
+    lines += ["[signals]", "target_angle = {}", "joint_angle = {}"]
+    lines += ["[[experiments]]", "name = 'a'", "file = 'a.csv'", "split = 'train'"]
+    (tmp_path / "dataset.toml").write_text("\n".join(lines), encoding="utf-8")
+    rows = np.column_stack([time, target, angle])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header="t,target_angle,joint_angle", comments="")
+    rig = load(tmp_path)
+    logs = read_logs(rig, rig.system().info)
+    assert logs is not None
+    of = Equation(rig, rig.system())
+    found = terms(of, logs)
+    names = [u.name for u in found.unknowns]
+    motor = rig.system().with_parameters({"resistance": 5.0})
+    other = terms(Equation(rig, motor), logs).residual
+    moved = found.residual + (5.0 / 4.0 - 1.0) * found.columns[names.index("resistance")]
+    np.testing.assert_allclose(moved, 5.0 / 4.0 * other, atol=1e-3 * np.std(moved))

@@ -59,6 +59,46 @@ def test_rows_count_as_their_share_of_independent_ones(nominal: Fitted, share: f
     assert nominal.counted(shares).evidence == pytest.approx(dense_evidence(nominal, shares), rel=1e-9)
 
 
+def test_beliefs_that_all_rows_overrule_cost_little_where_few_rows_count(nominal: Fitted) -> None:
+    """Where the data say nothing, a step of Newton goes back to what was believed, but by no more than a factor e."""
+    blind = replace(nominal, runs=tuple(replace(run, jacobian=0.0 * run.jacobian) for run in nominal.runs))
+    sd, share = np.array([f.sd for f in blind.free]), 0.02
+    for away in (0.5, 5.0):
+        moved = replace(blind, x=blind.x + np.eye(len(sd))[0] * away)
+        back = min(1.0, (1.0 - share) * away)
+        won = (1.0 - share) * away * back - 0.5 * back**2
+        cost = 0.5 * away**2 / sd[0] ** 2 - won / sd[0] ** 2
+        lost = blind.counted(share * np.ones(3)).evidence - moved.counted(share * np.ones(3)).evidence
+        assert lost == pytest.approx(cost, rel=1e-6)
+        assert blind.counted().evidence - moved.counted().evidence == pytest.approx(0.5 * away**2 / sd[0] ** 2)
+
+
+@pytest.mark.cpu(20)
+def test_unknowns_of_a_run_weigh_as_the_rows_that_count(fitter: Fitter, nominal: Fitted) -> None:
+    """100 rows that count as one push friction and initial states as far as one of a tenth of its precision."""
+    floor = replace(fitter.floor, sd=nominal.own_levels.tolist())
+    fewer = replace(fitter, floor=replace(floor, shares=(0.01, 0.01, 0.01)))
+    noisier = replace(fitter, floor=replace(floor, sd=[10.0 * sd for sd in floor.sd]))
+    one, other = (f.fit(fitter.case.system, known=True) for f in (fewer, noisier))
+    for a, b in zip(one.runs, other.runs, strict=True):
+        np.testing.assert_allclose(a.own, b.own, atol=1e-4)
+        np.testing.assert_allclose(a.by_own, 10.0 * b.by_own, rtol=1e-3, atol=1e-3)
+    assert max(np.max(np.abs(run.own)) for run in one.runs) > 0.01
+
+
+def test_scatter_of_friction_is_no_excess(nominal: Fitted) -> None:
+    """A residual as large as the known noise and what runs differ by is none; twice as large a one is."""
+    exact = replace(nominal, levels=nominal.known.copy() * 1.0001)
+    sizes = [np.sqrt(1.0 + np.sum(run.by_own**2, axis=1)) for run in exact.runs]
+
+    def leaving(factor: float) -> Fitted:
+        runs = [replace(run, residual=factor * size) for run, size in zip(exact.runs, sizes, strict=True)]
+        return replace(exact, runs=tuple(runs))
+
+    assert not leaving(0.99).exceeds_scatter
+    assert leaving(1.01).exceeds_scatter
+
+
 def test_a_model_that_leaves_twice_the_residual_has_twice_the_level(nominal: Fitted) -> None:
     doubled = replace(nominal, runs=tuple(replace(run, residual=2.0 * run.residual) for run in nominal.runs))
     assert (nominal.own_levels > nominal.known).all()

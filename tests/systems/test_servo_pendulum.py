@@ -147,6 +147,13 @@ def test_a_measured_servo_with_another_gain_is_predicted_better_than_guessed(tmp
     assert errors(fit.system, rig) < 0.75 * errors(rig.system(), rig)  # 0.106 rad against 0.168 rad
 
 
+@pytest.mark.skipif(not RECORDS.is_dir(), reason="TENDONLAB_DATA names no folder with bam_xl330/processed")
+def test_no_log_of_a_measured_servo_is_blamed(tmp_path: Path) -> None:
+    """Its motor is known from a data sheet only, and its friction depends on the load."""
+    write(tmp_path, [json.loads(path.read_text()) for path in sorted(RECORDS.glob("*.json"))])
+    assert not tl.check(tl.load(tmp_path)).blocks
+
+
 def errors(system: tl.System, rig: tl.Dataset) -> float:
     """Root mean square error of the joint angle over the records that were held out, rad."""
     squares = []
