@@ -86,17 +86,14 @@ def test_unknowns_of_a_run_weigh_as_the_rows_that_count(fitter: Fitter, nominal:
     assert max(np.max(np.abs(run.own)) for run in one.runs) > 0.01
 
 
-def test_scatter_of_friction_is_no_excess(nominal: Fitted) -> None:
-    """A residual as large as the known noise and what runs differ by is none; twice as large a one is."""
-    exact = replace(nominal, levels=nominal.known.copy() * 1.0001)
-    sizes = [np.sqrt(1.0 + np.sum(run.by_own**2, axis=1)) for run in exact.runs]
-
-    def leaving(factor: float) -> Fitted:
-        runs = [replace(run, residual=factor * size) for run, size in zip(exact.runs, sizes, strict=True)]
-        return replace(exact, runs=tuple(runs))
-
-    assert not leaving(0.99).exceeds_scatter
-    assert leaving(1.01).exceeds_scatter
+def test_what_friction_may_leave_from_run_to_run_is_counted(nominal: Fitted) -> None:
+    """By friction that differs 2.5 times as much as its default; initial states are no excuse."""
+    exact, groups = replace(nominal, levels=1.0001 * nominal.known), 2
+    runs = [
+        replace(run, residual=np.sqrt(1.0 + 2.5**2 * np.sum(run.by_own[:, -groups:] ** 2, axis=1)))
+        for run in exact.runs
+    ]
+    assert replace(exact, runs=tuple(runs)).over_scatter(groups) == pytest.approx(1.0, rel=1e-3)
 
 
 def test_a_model_that_leaves_twice_the_residual_has_twice_the_level(nominal: Fitted) -> None:

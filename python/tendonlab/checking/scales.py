@@ -22,7 +22,7 @@ SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, b
 EXPLAINED = 0.5  # level of the residual beyond which a corrected log explains too little to blame a channel
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
-BLOCKING = 1.5  # a factor below it is a parameter
+BLOCKING = 1.7  # a factor below it is a parameter
 
 
 @dataclass(frozen=True)

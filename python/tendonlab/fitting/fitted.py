@@ -10,10 +10,11 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab._core import Free
-from tendonlab.fitting.noise import integrated_time
+from tendonlab.fitting.noise import RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, integrated_time
 from tendonlab.fitting.uncertainty import Uncertainty, uncertainty
 from tendonlab.simulation.system import System
 
+UNKNOWN_SCATTER = RUN_TO_RUN_UNKNOWN / RUN_TO_RUN
 EXPLODED = 1e30  # precision of a coordinate, in units of its prior or of its size, that no measurement has
 
 
@@ -243,12 +244,13 @@ class Fitted:
         scale = self.levels / np.where(self.known > 0, self.known, 1.0)
         return float(np.mean(np.square(np.concatenate([run.residual * scale[run.output] for run in self.runs]))))
 
-    @property
-    def exceeds_scatter(self) -> bool:
-        """Whether it leaves more than the known noise and what runs differ by, their friction and initial states."""
+    def over_scatter(self, groups: int) -> float:
+        """`mean_square` over what the known noise and `groups` of friction that differ from run to run leave of a
+        perfect model, where nothing says by how much they do."""
         scale = np.square(self.levels / np.where(self.known > 0, self.known, 1.0))
-        scatter = [scale[run.output] * np.sum(np.square(run.by_own), axis=1) for run in self.runs]
-        return self.mean_square > 1.0 + float(np.mean(np.concatenate(scatter)))
+        own = [run.by_own[:, run.by_own.shape[1] - groups :] for run in self.runs]
+        scatter = [scale[run.output] * np.sum(np.square(o), axis=1) for run, o in zip(self.runs, own, strict=True)]
+        return self.mean_square / (1.0 + UNKNOWN_SCATTER**2 * float(np.mean(np.concatenate(scatter))))
 
     @cached_property
     def whitened_square(self) -> float:

@@ -14,12 +14,11 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.noise import RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, Floor
 from tendonlab.simulation.system import System
 
 AR_ORDER = 6
-RUN_TO_RUN, RUN_TO_RUN_WEIGHT = 0.008, 4.0  # default sd of friction from run to run, and the repeats it counts for
-RUN_TO_RUN_UNKNOWN = 0.02  # assumed in the plain floor where nothing repeats
+RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ from tendonlab.simulation.records import SignalSpec
 from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
+RUN_TO_RUN = 0.008  # default sd of friction from run to run
+RUN_TO_RUN_UNKNOWN = 0.02  # the largest one that is plausible where nothing repeats
 SMALLEST = 1e-7  # of a record's spread: what single precision resolves
 BLOCK = 2.0  # s: residuals of a mechanism stay correlated for less
 

@@ -12,8 +12,8 @@ from tendonlab.data import Dataset
 from tendonlab.diagnosis.floor import rough_fit
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.floor import RUN_TO_RUN, estimate, sensitivities
-from tendonlab.fitting.noise import Floor, noise_of
+from tendonlab.fitting.floor import estimate, sensitivities
+from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import SignalSpec

@@ -17,6 +17,7 @@ from tendonlab.diagnosis.answer.inverse import inverse_dynamics
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, decide
+from tendonlab.diagnosis.discrepancy import followed
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
@@ -90,6 +91,7 @@ def answer(
 
 
 def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor) -> Levels:
+    case, doubtful = search.fitter.case, not (floor.repeated or search.selected)
     return Levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
@@ -97,6 +99,8 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
         explained=heldout.explained(stages["refitted"], stages["with_effect"], floor) if search.selected else None,
         left=heldout.level(stages["with_effect"], floor),
         repeated=floor.repeated,
+        trained=search.tuned.over_scatter(len(case.scatter)) if doubtful else 1.0,
+        followed=followed(case, search.tuned) if doubtful else 0.0,
     )
 
 

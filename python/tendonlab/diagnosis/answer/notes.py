@@ -10,8 +10,7 @@ from tendonlab.diagnosis.answer.confirm import CONFIRMED
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.floor import RUN_TO_RUN_UNKNOWN
-from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.noise import RUN_TO_RUN_UNKNOWN, Floor
 from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS
 from tendonlab.simulation.catalog import unit
 

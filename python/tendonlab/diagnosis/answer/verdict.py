@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.search.contest import MATTERS, Round
 from tendonlab.diagnosis.search.halves import NEAR_FLOOR
 
@@ -26,7 +27,9 @@ class Levels:
     simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out experiments, which
     decides where nothing repeats. `explained`: share of the held-out excess that the selected effects remove, None
     where there is none. `left`: plain, of the simulator with them on held-out experiments. `repeated`: whether the
-    floor comes from repeats."""
+    floor comes from repeats. Where none does and nothing was selected, `trained`: of the refitted simulator on the
+    training experiments, in units of what run-to-run friction may leave, and `followed`: the share of that which
+    follows the motion."""
 
     nominal: float
     tuned: float
@@ -34,6 +37,8 @@ class Levels:
     explained: float | None
     left: float
     repeated: bool
+    trained: float = 1.0
+    followed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     after = levels.tuned if levels.repeated else levels.refitted
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - MATTERS
-    room = NEAR_FLOOR - levels.tuned if levels.repeated else min(SOFT, FAR - levels.refitted)
+    room = NEAR_FLOOR - levels.tuned if levels.repeated else _room(levels)
     at_floor = levels.nominal < NO_GAP or (gained < 0 < room and not selected)
     needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
@@ -76,6 +81,11 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     effects, sets = marginals(rounds)
     groups = [group for contest in rounds if (group := _group(contest))]
     return Verdict(verdict, {k: v / total for k, v in weight.items()}, effects, sets, groups)
+
+
+def _room(levels: Levels) -> float:
+    """By how much an error may be noise where nothing repeats; below 0 it is none."""
+    return min(SOFT, FAR - levels.refitted, FAR_TRAINED - levels.trained, FOLLOWED - levels.followed)
 
 
 def _step(x: float) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tendonlab.diagnosis.discrepancy import may_be_noise
 from tendonlab.diagnosis.search.halves import NEAR_FLOOR, predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
@@ -123,13 +124,13 @@ def _least_gain(base: Fitted, bar: Bar) -> float:
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:
     """Near the floor, which a few repeats determine to a few per cent, an effect must remove a share of the error that
-    matters. Without repeats it must explain enough, or leave no more than runs differ by. Near the floor, beyond the
-    first effect and where it explains little, it must predict experiments that it was not fitted to."""
+    matters. Without repeats it must explain enough, or leave what may be noise. Near the floor, beyond the first effect
+    and where it explains little, it must predict experiments that it was not fitted to."""
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
     if near_floor and first.mean_square > (1 - MATTERS) * base.mean_square:
         return False
     enough = fitter.floor.repeated or _explains_enough(base, trials)
-    if not enough and first.exceeds_scatter:
+    if not (enough or may_be_noise(fitter.case, first)):
         return False
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
 
