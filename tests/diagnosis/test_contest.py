@@ -128,6 +128,17 @@ def test_near_the_floor_and_beyond_the_first_effect_halves_decide(
     assert _worth_adding(fitter_of(repeated=True), of, [trial("a", 50.0, mean_square=first)], further=further) == worth
 
 
+@pytest.mark.parametrize(("noise", "better", "worth"), [(True, True, True), (True, False, False), (False, True, False)])
+def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
+    noise: bool, better: bool, worth: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
+    monkeypatch.setattr(contest, "may_be_noise", lambda *_: noise)
+    of: Any = SimpleNamespace(mean_square=6.6)
+    trials = [trial("a", 50.0, mean_square=4.9), trial("b", 49.0, mean_square=5.0)]
+    assert _worth_adding(fitter_of(repeated=False), of, trials, further=False) == worth
+
+
 def test_halves_are_predicted_better_only_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     from tendonlab.diagnosis.search import halves
 

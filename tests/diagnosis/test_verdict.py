@@ -9,6 +9,7 @@ import pytest
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
 from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
+from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
 
 
 def nothing_selected(*, refitted: float, repeated: bool = False, tuned: float = 1.0) -> Verdict:
@@ -25,6 +26,15 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
     found = nothing_selected(refitted=left)
     assert found.verdict == "unknown_effect"
     assert found.probability["parameters_only"] < 0.01
+
+
+@pytest.mark.parametrize("signs", [{"trained": 1.5 * FAR_TRAINED}, {"followed": 2.0 * FOLLOWED}])
+def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(signs: dict[str, float]) -> None:
+    near = Levels(nominal=1e4, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False)
+    assert decide((), (), near).verdict == "parameters_only"
+    found = decide((), (), replace(near, **signs))
+    assert found.verdict == "unknown_effect"
+    assert found.probability["parameters_only"] < 0.05
 
 
 @pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 9.0)])

@@ -1,0 +1,73 @@
+"""Whether residuals follow the motion: maps learnt from other experiments foretell them, or they do not."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED, followed, may_be_noise
+
+TIME = np.linspace(0.0, 10.0, 1000)
+RNG = np.random.default_rng(3)
+
+
+def case(residual: Any) -> Any:
+    """Five experiments along different sines, whose residual is that function of position, velocity and experiment."""
+    paths = [(np.sin(w * TIME + w), w * np.cos(w * TIME + w)) for w in (1.0, 1.7, 2.3, 3.1, 4.2)]
+    runs = [
+        {"outputs": np.array([residual(q, v, k)]), "ports": np.array([[v, q, 0.0 * q, 0.0 * q]])}
+        for k, (q, v) in enumerate(paths)
+    ]
+    return SimpleNamespace(
+        train=range(5),
+        measured=[0],
+        scatter=((), ()),
+        prepared=[SimpleNamespace(measured=np.zeros((1, len(TIME))))] * 5,
+        system=SimpleNamespace(info=SimpleNamespace(ports=["joint"])),
+        run=lambda i, *_, **__: runs[i],
+    )
+
+
+MODEL: Any = SimpleNamespace(system=None, initial=[()] * 5, over_scatter=lambda groups: float(groups))
+
+
+def noise(size: np.ndarray) -> np.ndarray:
+    return RNG.standard_normal(len(size))
+
+
+def slow(q: np.ndarray) -> np.ndarray:
+    """With a memory of 0.5 s."""
+    return np.convolve(noise(q), np.ones(50) / 50.0, mode="same")
+
+
+@pytest.mark.parametrize("form", [lambda q, v: np.exp(-(((q - 0.4) / 0.2) ** 2)), lambda q, v: np.sign(v) * q])
+def test_what_depends_on_position_and_direction_is_foretold(form: Any) -> None:
+    """Half of the mean square is noise: the maps foretell the other half."""
+
+    def left(q: np.ndarray, v: np.ndarray, _: int) -> np.ndarray:
+        own = form(q, v)
+        return own + np.sqrt(np.mean(own**2)) * noise(q)
+
+    assert followed(case(left), MODEL) == pytest.approx(0.5, abs=0.1)
+    assert not may_be_noise(case(left), MODEL)
+
+
+@pytest.mark.parametrize("left", [lambda q, v, k: noise(q), lambda q, v, k: slow(q), lambda q, v, k: (-1.0) ** k * q])
+def test_noise_is_not_foretold(left: Any) -> None:
+    """White, slow, or in each experiment of another sign."""
+    rig = case(left)
+    assert followed(rig, MODEL) < FOLLOWED
+    assert may_be_noise(rig, MODEL)
+
+
+def test_too_much_is_no_noise() -> None:
+    large: Any = SimpleNamespace(**{**vars(MODEL), "over_scatter": lambda _: 1.01 * FAR_TRAINED})
+    assert not may_be_noise(case(lambda q, v, k: noise(q)), large)
+
+
+def test_samples_that_were_not_measured_and_exact_models_are_no_discrepancy() -> None:
+    assert followed(case(lambda q, v, k: np.where(q > 0.5, np.nan, noise(q))), MODEL) < FOLLOWED
+    assert followed(case(lambda q, v, k: 0.0 * q), MODEL) == 0.0
