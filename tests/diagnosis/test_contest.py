@@ -136,7 +136,7 @@ def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
     monkeypatch.setattr(contest, "may_be_noise", lambda *_: noise)
     of: Any = SimpleNamespace(mean_square=6.6)
     trials = [trial("a", 50.0, mean_square=4.9), trial("b", 49.0, mean_square=5.0)]
-    assert _worth_adding(fitter_of(repeated=False), of, trials, further=False) == worth
+    assert _worth_adding(fitter_of(repeated=False, case=None), of, trials, further=False) == worth
 
 
 def test_halves_are_predicted_better_only_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
