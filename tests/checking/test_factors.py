@@ -65,7 +65,7 @@ def test_a_sign_with_a_wrong_size_says_both(rig: tl.Dataset) -> None:
     assert "−57.3 times as stated; turn the sign of joint_angle. Their size is wrong as well" in found.detail
     assert "degrees and radians" in found.detail
     assert "size" not in factor_findings([factor(-0.7, "joint_angle")], rig)[0].detail
-    assert "size" in factor_findings([factor(-0.6, "joint_angle")], rig)[0].detail
+    assert "size" in factor_findings([factor(-0.5, "joint_angle")], rig)[0].detail
 
 
 def test_a_scale_names_the_unit_and_the_constant_that_turns_the_command_into_an_effort(rig: tl.Dataset) -> None:
@@ -86,7 +86,7 @@ def test_each_signal_of_a_shared_factor_has_its_finding(rig: tl.Dataset) -> None
 
 
 @pytest.mark.parametrize(
-    ("value", "blocks"), [(1.0, False), (1.4, False), (1.6, True), (0.7, False), (0.6, True), (-1.0, True)]
+    ("value", "blocks"), [(1.0, False), (1.6, False), (1.8, True), (0.65, False), (0.55, True), (-1.0, True)]
 )
-def test_a_factor_below_one_and_a_half_is_a_parameter(value: float, blocks: bool) -> None:
+def test_a_factor_of_less_than_1_7_is_a_parameter(value: float, blocks: bool) -> None:
     assert _blocks(value) == blocks

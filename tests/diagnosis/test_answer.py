@@ -20,20 +20,27 @@ def replayed(*errors: float) -> Any:
 
 
 @pytest.mark.parametrize("repeated", [False, True])
-def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(repeated: bool) -> None:
+def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
+    repeated: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     floor: Any = SimpleNamespace(rms=FLOOR.rms, repeated=repeated)
     stages = {
         name: replayed(0.5 * level, np.nan, 2.0 * level)
         for name, level in (("nominal", 5.0), ("refitted", 3.0), ("with_effect", 2.0))
     }
     nominal: Any = SimpleNamespace(mean_square=77.0)
-    search: Any = SimpleNamespace(tuned=SimpleNamespace(mean_square=7.0), selected=("x",))
+    monkeypatch.setattr(answer, "followed", lambda case, model: 0.25)
+    tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
+    fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
+    search: Any = SimpleNamespace(tuned=tuned, selected=("x",), fitter=fitter)
     found = _levels(search, nominal, stages, floor)
     assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
     assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
     assert found.explained == pytest.approx(5.0 / 8.0)
     search.selected = ()
-    assert _levels(search, nominal, stages, floor).explained is None
+    none = _levels(search, nominal, stages, floor)
+    assert none.explained is None
+    assert (none.trained, none.followed) == ((1.0, 0.0) if repeated else (20.0, 0.25))
 
 
 def test_the_gap_lists_floor_and_error_of_each_stage() -> None:
