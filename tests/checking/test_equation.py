@@ -44,7 +44,7 @@ def test_what_is_left_is_inertia_gravity_and_friction_less_the_torque(equation: 
 
 def test_without_inputs_the_motion_alone_is_left(equation: Equation) -> None:
     logs = exact()
-    stretches = [s.without_inputs(equation.system) for s in equation.along(logs)]
+    stretches = [s.without_inputs(equation.system, logs.driving) for s in equation.along(logs)]
     (silent,) = equation.evaluate(stretches, len(TIME))
     (left,) = equation.evaluate(equation.along(logs), len(TIME))
     np.testing.assert_allclose(silent - left, CONSTANT * logs.driving["motor_torque"][0], atol=1e-9)
@@ -148,6 +148,22 @@ def test_conditions_that_differ_are_evaluated_apart(tmp_path: Path) -> None:
     index = [p.name for p in of.system.info.parameters].index("gravity_torque")
     _, (nudged,) = of.nudged(of.along(twice), len(run), {index: 0.1})
     np.testing.assert_allclose(nudged - left, np.where(run == 0, 0.0, 0.1 * np.tile(np.sin(q), 2)), atol=1e-9)
+
+
+def test_a_gain_that_one_experiment_states_scales_the_others_alone(tmp_path: Path) -> None:
+    rig = record().write(tmp_path)
+    first, *rest = rig.experiments
+    stated = replace(first, conditions={"torque_constant": CONSTANT})
+    constant = replace(rig.parameters["torque_constant"], sd=0.1 * CONSTANT)
+    changed = replace(rig, experiments=(stated, *rest), parameters={**rig.parameters, "torque_constant": constant})
+    both, index = exact(np.cos(3 * TIME)), np.concatenate([np.arange(len(TIME))] * 2)
+    twice = replace(both.at(index), run=np.repeat([0, 1], len(TIME)))
+    of = Equation(changed, changed.system())
+    found = terms(of, twice)
+    (column,) = found.columns[[u.name for u in found.unknowns].index("torque_constant")]
+    assert not column[: len(TIME)].any()
+    silent = found.residual[0] + CONSTANT * twice.driving["motor_torque"][0]  # what scales inversely
+    np.testing.assert_allclose(column[len(TIME) :], silent[len(TIME) :], atol=1e-6)
 
 
 def test_without_inputs_the_size_of_an_equation_is_what_it_leaves(equation: Equation) -> None:

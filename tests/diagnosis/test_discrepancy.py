@@ -71,3 +71,5 @@ def test_too_much_is_no_noise() -> None:
 def test_samples_that_were_not_measured_and_exact_models_are_no_discrepancy() -> None:
     assert followed(case(lambda q, v, k: np.where(q > 0.5, np.nan, noise(q))), MODEL) < FOLLOWED
     assert followed(case(lambda q, v, k: 0.0 * q), MODEL) == 0.0
+    once = case(lambda q, v, k: np.sign(v) if k == 0 else np.nan * q)
+    assert followed(once, MODEL) == 0.0  # no other experiment tells

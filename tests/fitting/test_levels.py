@@ -60,7 +60,7 @@ def test_rows_count_as_their_share_of_independent_ones(nominal: Fitted, share: f
 
 
 def test_beliefs_that_all_rows_overrule_cost_little_where_few_rows_count(nominal: Fitted) -> None:
-    """Where the data say nothing, a step of Newton goes back to what was believed, but by no more than a factor e."""
+    """Where the data say nothing, a step of Newton goes back to what was believed, by at most 1 in each coordinate."""
     blind = replace(nominal, runs=tuple(replace(run, jacobian=0.0 * run.jacobian) for run in nominal.runs))
     sd, share = np.array([f.sd for f in blind.free]), 0.02
     for away in (0.5, 5.0):

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
-from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.papers.s3 import (
     Chain,
     Record,
@@ -246,6 +246,14 @@ def test_two_steppers_agree_on_the_chain() -> None:
     )  # fmt: skip
     assert np.max(np.abs(log["tau_out"] - of.stretching[-1] @ run.y)) < 2e-3  # of 15 N·m, at the tolerance of the twin
     assert np.max(np.abs(log["v"] - run.y[1] / DEGREE)) < 0.02
+
+
+def test_a_chain_that_cannot_be_integrated_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    chain, torque = Chain(shape=paper_shape(6), pretension=200.0), Trajectory("sine", 15.0, 4.0)
+    assert len(chain.simulate(torque, duration=0.005)) == 1
+    monkeypatch.setattr("tendonlab.papers.s3.chain.MOST_STEPS", 2)
+    with pytest.raises(NumericalError, match="could not be integrated under"):
+        chain.simulate(torque, duration=1.0)
 
 
 def test_the_chain_s_friction_adds_up_to_the_model_s_offset() -> None:

@@ -81,7 +81,8 @@ py::dict balance(const std::string& kind, const Array& values, const std::vector
   const Model& of = model(kind);
   const auto width = static_cast<py::ssize_t>(of.info().parameters.size());
   if (values.ndim() != 2 || values.shape(1) != width)
-    throw ParameterError(sentence("values with ", values.ndim(), " dimensions: expected shape (m, ", width, ")"));
+    throw ParameterError(sentence("values: ", values.ndim(), " dimensions of ", values.size(),
+                                  " numbers in all; expected shape (m, ", width, ")"));
   const integrate::MeasuredMotion motion{{position.data(), position.data() + position.size()},
                                          {velocity.data(), velocity.data() + velocity.size()}};
   std::vector<integrate::Balance> found;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -83,7 +83,8 @@ class Equation:
         alone = any(s.between != "hold" and s.name in logs.driving for s in self.system.info.inputs)
         groups: dict[str, list[int]] = {}
         for i in np.unique(logs.run).tolist():
-            groups.setdefault(str(i) if alone else repr(self.conditions[i].values), []).append(i)
+            under = self.conditions[i]
+            groups.setdefault(str(i) if alone else repr((under.values, sorted(under.fixed))), []).append(i)
         return list(groups.values())
 
 
@@ -130,13 +131,15 @@ class Stretch:
         core = _core_experiment(equation.system, logs, own, time)
         return cls(own, core, under, *_motion(equation, logs, own, under.shape), rest)
 
-    def without_inputs(self, system: System) -> Stretch:
-        """The same where nothing drives."""
+    def without_inputs(self, system: System, given: Collection[str]) -> Stretch:
+        """The same where the inputs that were `given` are 0. One that was not logged stays out: a system may be another
+        one with it."""
         info, time = system.info, self.core.time
         still = [0.0] * info.dof
-        nothing = [_core.Signal(np.array(time[:1]), np.zeros((1, 4)), False) for _ in info.inputs]
+        nothing = _core.Signal(np.array(time[:1]), np.zeros((1, 4)), False)
+        inputs = [nothing if s.name in given else _core.Signal() for s in info.inputs]
         core = _core.Experiment(
-            kind=info.kind, time=time, inputs=nothing, loop=_core.Loop(), position=still, velocity=still
+            kind=info.kind, time=time, inputs=inputs, loop=_core.Loop(), position=still, velocity=still
         )
         return replace(self, core=core)
 

@@ -51,14 +51,18 @@ def terms(equation: Equation, logs: Logs) -> Terms:
     free = _free(equation)
     nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items()}
     residual, *moved = equation.nudged(stretches, num, nudges)
-    silent, *moved_silent = equation.nudged([s.without_inputs(equation.system) for s in stretches], num, nudges)
+    silent, *moved_silent = equation.nudged(
+        [s.without_inputs(equation.system, logs.driving) for s in stretches], num, nudges
+    )
     zeros, stiffness = _zeros(equation, logs, stretches, residual)
     size = _size(equation, logs, residual, silent, stiffness)
     rows = []
     for (k, nudge), after, after_silent in zip(nudges.items(), moved, moved_silent, strict=True):
-        slope, driven = (after - residual) / nudge, residual - silent
-        grown = (after - after_silent - driven) / nudge
-        rows.append(_gain(*free[k], residual, slope, driven, grown) or _believed(*free[k], slope / size[:, None], size))
+        unstated = _where_free(k, stretches, num)
+        slope, driven = (after - residual) / nudge, unstated * (residual - silent)
+        grown = unstated * (after - after_silent - residual + silent) / nudge
+        gain = _gain(*free[k], unstated * residual, slope, driven, grown)
+        rows.append(gain or _believed(*free[k], slope / size[:, None], size))
     rows += [*zeros, *_extras(equation, logs, size)]
     seen = [(u, c) for u, c in rows if np.any(c) and np.isfinite(c).all()]
     columns = np.array([c for _, c in seen]).reshape(len(seen), *residual.shape)
@@ -75,6 +79,15 @@ def _free(equation: Equation) -> dict[int, tuple[ParameterInfo, NominalParameter
     }
 
 
+def _where_free(parameter: int, stretches: Sequence[Stretch], num: int) -> np.ndarray:
+    """1 at samples of experiments that do not state the parameter of that index, 0 elsewhere."""
+    free = np.ones(num)
+    for stretch in stretches:
+        if parameter in stretch.under.fixed:
+            free[stretch.own] = 0.0
+    return free
+
+
 def _nudge(p: ParameterInfo, stated: NominalParameter) -> float:
     """A small change of a parameter, within its bounds."""
     nudge = NUDGE * (abs(stated.value) or abs(p.typical) or 1.0)
@@ -89,17 +102,20 @@ def _gain(
     driven: np.ndarray,
     grown: np.ndarray,
 ) -> Column | None:
-    """A parameter that scales what the inputs contribute: it scales all else inversely, so that residuals stay in the
-    unit of what was logged. If it scaled the inputs, the least gain would leave the least residual. `slope`, `grown`:
-    how the residual and what the inputs contribute, `driven`, change with it. None for any other parameter."""
-    square = float(np.sum(driven**2))
-    power = float(np.sum(grown * driven)) * stated.value / square if square > 0 else 0.0
-    if abs(power) < LEAST_POWER:
+    """A parameter that scales what the inputs contribute: it scales all else in those equations inversely, so that
+    residuals stay in the unit of what was logged. If it scaled the inputs, the least gain would leave the least
+    residual. `slope`, `grown`: how the residual and what the inputs contribute, `driven`, change with it; nothing where
+    an experiment states its value. None for any other parameter, and for one that may have either sign."""
+    if stated.value == 0.0 or (p.lower < 0 and p.role != "command_gain"):
         return None
-    acts = np.any(driven, axis=1)[:, None]
-    column = np.where(acts, power * residual, 0.0) - slope * stated.value
+    square = np.sum(np.square(driven), axis=1)
+    power = np.sum(grown * driven, axis=1) * stated.value / np.where(square > 0, square, 1.0)
+    strongest = float(power[np.argmax(np.abs(power))])
+    if abs(strongest) < LEAST_POWER:
+        return None
+    column = power[:, None] * residual - slope * stated.value
     sd = _default_sd(p) if stated.sd is None else stated.sd / abs(stated.value)
-    return Unknown(p.name, sd=sd, logarithm=True), column * np.sign(power)
+    return Unknown(p.name, sd=sd, logarithm=True), column * np.sign(strongest)
 
 
 def _size(

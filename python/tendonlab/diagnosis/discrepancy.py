@@ -23,11 +23,11 @@ def may_be_noise(case: Case, model: Fitted) -> bool:
 
 def followed(case: Case, model: Fitted) -> float:
     """Largest share of the mean square residual of an output that a map over position and direction of a port foretells
-    in experiments other than those that it was learnt from; below 0 where maps mislead."""
+    in experiments other than those that it was learnt from; 0 where maps mislead, and of a single experiment."""
+    if len(case.train) < 2:
+        return 0.0
     runs = [case.run(i, model.system, own, ports=True) for i, own in zip(case.train, model.initial, strict=True)]
     residuals = [run["outputs"] - case.prepared[i].measured for i, run in zip(case.train, runs, strict=True)]
-    if len(runs) < 2:
-        return 0.0
     shares = [0.0]
     for port in range(len(case.system.info.ports)):
         motions = [np.asarray(run["ports"])[port] for run in runs]
@@ -54,7 +54,9 @@ def _cells(motions: list[np.ndarray]) -> list[np.ndarray]:
 def _foretold(cells: list[np.ndarray], residuals: list[np.ndarray]) -> float:
     """Share of the mean square of all residuals that maps learnt from all other experiments foretell."""
     there = [np.isfinite(r) for r in residuals]
-    pairs = [(a[ok], r[ok]) for a, r, ok in zip(cells, residuals, there, strict=True)]
+    pairs = [(a[ok], r[ok]) for a, r, ok in zip(cells, residuals, there, strict=True) if ok.any()]
+    if len(pairs) < 2:
+        return 0.0
     inner, along = [a.T @ a for a, _ in pairs], [a.T @ r for a, r in pairs]
     total, left = sum(float(r @ r) for _, r in pairs), 0.0
     for k, (a, r) in enumerate(pairs):

@@ -159,7 +159,7 @@ class Fitted:
     @property
     def _overpaid(self) -> float:
         """Nats by which a fit that counts all rows goes too far from what was believed, where the rows count as fewer:
-        what a Newton step back wins, at most by a factor e in each parameter."""
+        what a Newton step back wins, by at most 1 in each coordinate."""
         moving, share = self._moving, float(np.mean(self.shares[self.levels > 0]))
         pull = ((1.0 - share) * self._prior * (self.x - np.array([f.mean for f in self.free])))[moving]
         if share == 1.0 or not moving.any():
