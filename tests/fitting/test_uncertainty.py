@@ -134,3 +134,13 @@ def test_what_has_no_variance_is_correlated_with_nothing() -> None:
     """Derivatives of 1e160 leave variances below what doubles hold: 0 in the table, and no overflow."""
     assert _correlation(np.array([[1e-320, 1e-10], [1e-10, 4.0]])).tolist() == [[1.0, 0.0], [0.0, 1.0]]
     assert _correlation(np.array([[1.0, 1.0], [1.0, 4.0]])) == pytest.approx(np.array([[1.0, 0.5], [0.5, 1.0]]))
+
+
+def test_exploded_derivatives_leave_unbounded_intervals_and_no_nan() -> None:
+    residual, slopes, parts = straight_line(100, 0.1)
+    found = uncertainty(
+        [(residual, 1e160 * slopes, parts)], [free("offset"), free("slope")], np.zeros(2), at_bound=[False] * 2,
+        informed=[True] * 2,
+    )  # fmt: skip
+    assert not np.isnan(np.concatenate([found.sd, found.lower, found.upper, found.correlations.ravel()])).any()
+    assert np.isinf(found.sd).all()

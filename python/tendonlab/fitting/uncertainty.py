@@ -36,6 +36,7 @@ def informed(jacobians: Iterable[np.ndarray], free: Sequence[Free]) -> np.ndarra
     return np.asarray(information * width**2 > NOTHING)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # derivatives may explode: nothing is then known of a parameter
 def uncertainty(
     runs: Sequence[Marginal],
     free: Sequence[Free],
@@ -76,7 +77,7 @@ def _correlation(covariance: np.ndarray) -> np.ndarray:
     scale = np.sqrt(np.where(spread, variance, 1.0))
     found = np.where(np.outer(spread, spread), covariance / np.outer(scale, scale), 0.0)
     np.fill_diagonal(found, 1.0)
-    return found
+    return np.where(np.isfinite(found), found, 0.0)
 
 
 def _covariances(
@@ -116,6 +117,7 @@ def _sandwich(bread: np.ndarray, prior: np.ndarray, scores: Sequence[np.ndarray]
 def _spread(covariances: Sequence[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:
     """Sd and half width of the 95 % interval of each coordinate: the largest that any of the covariances gives."""
     variance = [np.maximum(np.diag(covariance), 0.0) for covariance, _ in covariances]
+    variance = [np.where(np.isnan(v), np.inf, v) for v in variance]
     freedom = [max(1.0, clusters - 1) for _, clusters in covariances]
     if len(covariances) == 3:
         variance[2] = (ALIKE * variance[1] + freedom[2] * variance[2]) / (ALIKE + freedom[2])
