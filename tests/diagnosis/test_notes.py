@@ -74,3 +74,11 @@ def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
     assert notes.units(current)["motor_torque"] == "A"
     assert notes.units(current)["reference_angle"] == notes.units(current)["motor_angle"] == "rad"
     assert notes.units(current)["known_torque"] == "N*m"  # was not logged
+
+
+def test_an_error_that_is_no_noise_is_explained() -> None:
+    assert notes.no_noise(1.0, 0.1) == []
+    (follows,) = notes.no_noise(1.0, 0.45)
+    assert "foretells 45 % of its mean square" in follows
+    (large,) = notes.no_noise(16.0, 0.0)
+    assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large

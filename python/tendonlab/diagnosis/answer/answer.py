@@ -75,6 +75,7 @@ def answer(
             *notes.warnings(case, floor, search),
             *notes.not_asked(case, search, library),
             *notes.not_improved(held_out, search.selected),
+            *notes.no_noise(levels.trained, levels.followed),
         ),
         units=notes.units(case),
         overlays=overlays(case, stages, floor, judged),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED
+from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -107,6 +108,22 @@ def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
         for name, row in worse.iterrows()
         if row["refitted"] > 0
     ]
+
+
+def no_noise(trained: float, followed: float) -> list[str]:
+    """A warning where what the refitted simulator leaves cannot be noise although nothing repeats; see `Levels`."""
+    found = []
+    if followed >= FOLLOWED:
+        found.append(
+            "The remaining error follows the motion: a map over position and direction, learnt from other experiments, "
+            f"foretells {100 * followed:.0f} % of its mean square. It is no noise."
+        )
+    if trained >= FAR_TRAINED:
+        found.append(
+            f"The remaining error is {trained**0.5:.2g} times as large as sensors and friction that differs by "
+            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % from run to run leave. It is no noise."
+        )
+    return found
 
 
 def replay(case: Case) -> dict[str, Any]:
