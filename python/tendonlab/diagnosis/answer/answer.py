@@ -83,8 +83,7 @@ def answer(
         held_out=held_out,
         table=inverse_dynamics(case, [model.system for model in search.path], judged),
         split={
-            "train": [case.experiments[i].name for i in case.train],
-            "test": [case.experiments[i].name for i in case.test],
+            split: [case.experiments[i].name for i in of] for split, of in (("train", case.train), ("test", case.test))
         },
         details={**notes.details(case, floor, nominal, search), "steps": _steps(case, search, steps)},
         seconds=seconds(),
