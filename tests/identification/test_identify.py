@@ -231,11 +231,11 @@ def test_interrupt_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C while fits run, each of which waits for it: none can end before, however fast or busy the machine is."""
     solve = Problem.solve
 
-    def running(problem: Problem, *, cancel: Any) -> Any:
+    def running(problem: Problem, *, cancel: Any, **options: Any) -> Any:
         ends = time.monotonic() + 60.0
         while not cancel.is_set() and time.monotonic() < ends:
             time.sleep(0.001)
-        return solve(problem, cancel=cancel)
+        return solve(problem, cancel=cancel, **options)
 
     def interrupted(jobs: Any) -> Any:
         while not any(job.running() for job in jobs):

@@ -110,7 +110,8 @@ def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
         "this is the whole explanation: 0.93, not yet calibrated.",
         "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor. Probability of "
         "this verdict: 0.97.",
-        "parameters_only": "Only parameter values were off, and no effect is missing. Re-identifying them shrinks the "
+        "parameters_only": "Parameter values were off, and no missing effect can be shown: the refitted simulator errs by "
+        "23 times the noise floor, and no effect of the library lowers that reliably. Re-identifying them shrinks the "
         "held-out gap by 94 % (91–96 %). Probability of this verdict: 0.90, not yet calibrated.",
         "unknown_effect": "The library explains only a part of the gap. Presliding friction at the joint and "
         "load-dependent friction at the joint are established and explain 71 % of the excess error; the rest is "
@@ -131,6 +132,9 @@ def test_no_gap_above_the_floor_is_not_said_to_lie_on_it(with_effect: Diagnosis)
     near, above = {"joint_angle": gap(1.05)}, {"joint_angle": gap(1.3), "torque": gap(1.1)}
     assert "predicts to the noise floor" in replace(nothing, gap=near).sentence
     assert "errs by 1.2 times the noise floor, and neither tuning nor" in replace(nothing, gap=above).sentence
+    tuned = replace(nothing, verdict="parameters_only", verdict_probability=probability)
+    assert "and no effect is missing." in replace(tuned, gap=near).sentence
+    assert "the refitted simulator errs by 1.2 times the noise floor" in replace(tuned, gap=above).sentence
 
 
 def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> None:

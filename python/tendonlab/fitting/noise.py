@@ -15,6 +15,7 @@ from tendonlab.simulation.records import SignalSpec
 from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
+NEAR_FLOOR = 1.3  # whitened mean square below which a model is nearly at the floor
 RUN_TO_RUN = 0.008  # default sd of friction from run to run
 RUN_TO_RUN_UNKNOWN = 0.02  # the largest one that is plausible where nothing repeats
 SMALLEST = 1e-7  # of a record's spread: what single precision resolves
@@ -50,6 +51,10 @@ class Floor:
         if self.shares is None:
             return 1.0
         return float(np.mean([share for share, sd in zip(self.shares, self.sd, strict=True) if sd > 0]))
+
+    def under(self, level: float) -> Floor:
+        """The same with `level` times the power of the noise."""
+        return replace(self, sd=[float(np.sqrt(level)) * sd for sd in self.sd])
 
     def left_by(self, levels: np.ndarray, shares: np.ndarray) -> Floor:
         """The floor where a model leaves residuals of these levels."""

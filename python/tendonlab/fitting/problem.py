@@ -49,6 +49,10 @@ class Problem:
         free = tuple(f.started(system.parameters[f.name]) for f in self.free)
         return replace(self, system=system, free=free, initial=tuple(tuple(own) for own in initial))
 
+    def under(self, level: float) -> Problem:
+        """The same problem under noise of `level` times the power."""
+        return replace(self, floor=self.floor.under(level))
+
     def with_fixed(self, name: str, value: float) -> Problem:
         """The same problem with one free parameter held at `value`."""
         free = tuple(f for f in self.free if f.name != name)
@@ -200,8 +204,7 @@ class Fitter:
 
     def under(self, level: float) -> Fitter:
         """The same under noise of `level` times the power, for fits to the training experiments."""
-        floor = replace(self.floor, sd=[float(np.sqrt(level)) * sd for sd in self.floor.sd])
-        return replace(self, floor=floor)
+        return replace(self, floor=self.floor.under(level))
 
 
 def pose(

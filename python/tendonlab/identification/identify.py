@@ -22,6 +22,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Problem, pose
+from tendonlab.fitting.starts import cooled, reseated
 from tendonlab.identification.result import Identification
 from tendonlab.progress import track
 from tendonlab.seed import generator
@@ -56,7 +57,8 @@ def identify(
     conditions and additions, and uncertain initial states as nuisances. A parameter on which no measured sample depends
     is held at its nominal value and listed (`not_informed`). `experiments`: names, instead of the training
     ones. `num_starts`: the first from the nominal values, the others drawn from the priors with `seed`; the best is
-    kept. An added effect that is gone at the end of its fit starts again, larger.
+    kept. Each is led by fits under falling noise, and runs that it leaves in a wrong initial state start again.
+    An added effect that is gone at the end of its fit starts again, larger.
     `tolerance`: relative error of a step of the simulation; default: the loosest at which the simulator's own
     error stays below a tenth of the sensors' noise. Ctrl-C keeps the best so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect or a
@@ -131,7 +133,7 @@ def _solve(starts: Sequence[Problem], *, progress: bool) -> Fitted:
     """The best of several fits, run in threads; the order of the starts decides ties, whatever finishes first."""
     cancel = _core.Cancel()
     with ThreadPoolExecutor(max_workers=min(len(starts), os.cpu_count() or 1)) as pool:
-        jobs = [pool.submit(start.solve, cancel=cancel) for start in starts]
+        jobs = [pool.submit(_solved, start, cancel) for start in starts]
         try:
             for _ in track(as_completed(jobs), total=len(jobs), label="identify", unit="start", shown=progress):
                 pass
@@ -140,6 +142,10 @@ def _solve(starts: Sequence[Problem], *, progress: bool) -> Fitted:
             for job in jobs:
                 job.cancel()
     return _best(jobs)
+
+
+def _solved(start: Problem, cancel: _core.Cancel) -> Fitted:
+    return reseated(start, cooled(start, cancel).solve(cancel=cancel), cancel)
 
 
 def _best(jobs: Sequence[Future[Fitted]]) -> Fitted:

@@ -65,8 +65,7 @@ def _data_fault(diagnosis: Diagnosis) -> str:
 
 
 def _no_gap(diagnosis: Diagnosis) -> str:
-    squares = [(error["nominal"] / error["noise_floor"]) ** 2 for error in diagnosis.gap.values()]
-    floors = (sum(squares) / len(squares)) ** 0.5 if squares else 0.0
+    floors = _floors(diagnosis, "nominal")
     if floors < ON_FLOOR:
         return "There is no gap to explain: the simulator as it stands predicts to the noise floor."
     return (
@@ -77,7 +76,19 @@ def _no_gap(diagnosis: Diagnosis) -> str:
 
 def _parameters_only(diagnosis: Diagnosis) -> str:
     tail = _shrinks(diagnosis, "from_nominal", "Re-identifying them")
-    return f"Only parameter values were off, and no effect is missing.{tail}"
+    floors = _floors(diagnosis, "refitted")
+    if floors < ON_FLOOR:
+        return f"Only parameter values were off, and no effect is missing.{tail}"
+    return (
+        f"Parameter values were off, and no missing effect can be shown: the refitted simulator errs by {floors:.2g} "
+        f"times the noise floor, and no effect of the library lowers that reliably.{tail}"
+    )
+
+
+def _floors(diagnosis: Diagnosis, stage: str) -> float:
+    """The held-out error at a stage over the noise floor, rms over the outputs."""
+    squares = [(error[stage] / error["noise_floor"]) ** 2 for error in diagnosis.gap.values()]
+    return float((sum(squares) / len(squares)) ** 0.5) if squares else 0.0
 
 
 def _effect(diagnosis: Diagnosis) -> str:

@@ -116,12 +116,12 @@ def no_noise(trained: float, followed: float) -> list[str]:
     if followed >= FOLLOWED:
         found.append(
             "The remaining error follows the motion: a map over position and direction, learnt from other experiments, "
-            f"foretells {100 * followed:.0f} % of its mean square. It is no noise."
+            f"foretells {100 * followed:.0f} % of its mean square. So it is not noise."
         )
     if trained >= FAR_TRAINED:
         found.append(
             f"The remaining error is {trained**0.5:.2g} times as large as sensors and friction that differs by "
-            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % from run to run leave. It is no noise."
+            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % from run to run leave. So it is not noise."
         )
     return found
 

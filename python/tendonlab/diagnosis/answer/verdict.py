@@ -10,7 +10,7 @@ import numpy as np
 
 from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.search.contest import MATTERS, Round
-from tendonlab.diagnosis.search.halves import NEAR_FLOOR
+from tendonlab.fitting.noise import NEAR_FLOOR
 
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 10.0  # mean square, in units of a floor that is only assumed, beyond which it is no noise

@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tendonlab.diagnosis.discrepancy import may_be_noise
-from tendonlab.diagnosis.search.halves import NEAR_FLOOR, predicts_better
+from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one

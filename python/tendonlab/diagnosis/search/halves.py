@@ -15,7 +15,6 @@ from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
-NEAR_FLOOR = 1.3  # whitened mean square below which the model without the effect is nearly at the floor
 ITERATIONS = 6
 
 

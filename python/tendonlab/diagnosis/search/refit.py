@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from tendonlab.diagnosis.search.halves import NEAR_FLOOR
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.swap import extended
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.noise import NEAR_FLOOR
+from tendonlab.fitting.problem import Fitter, pose
+from tendonlab.fitting.starts import cooled
 from tendonlab.simulation.system import System
 
 SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to be finished
 BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
 STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which it compensates for something
-NUM_COOLINGS = 6  # fits under noise as large as the misfit, at the most
 MOST = 700.0  # logarithm of the largest ratio of costs: far behind is behind
-COOLED = 0.01  # relative change of the cost at which a cooling ends: all that counts is whether it halves the misfit
 
 Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
 
@@ -110,18 +109,7 @@ def _believed(fitter: Fitter, base: Fitted, system: System) -> System:
 def _cooled(
     fitter: Fitter, base: Fitted, system: System, added: Sequence[str]
 ) -> tuple[System, tuple[tuple[float, ...], ...]]:
-    """A start from the nominal values: fits under noise as large as the misfit, as long as each fit halves the misfit.
-
-    Under so much noise, parameters that the data hardly determine stay at their nominal values."""
-    system = _believed(fitter, base, system)
-    fit = fitter.fit(system, added=added, solve=False)
-    misfit = fit.whitened_square
-    for _ in range(NUM_COOLINGS):
-        level = max(1.0, misfit)
-        fit = fitter.under(level).fit(
-            fit.system, added=added, initial=fit.initial, max_iterations=SKETCH, tolerance=COOLED
-        )
-        misfit = level * fit.whitened_square
-        if misfit > 0.5 * level or misfit < NEAR_FLOOR:
-            break
-    return fit.system, fit.initial
+    """A start from the nominal values."""
+    believed = _believed(fitter, base, system)
+    there = cooled(pose(fitter.case, fitter.floor, believed, added=added), fitter.cancel)
+    return there.system, there.initial
