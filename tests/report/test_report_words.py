@@ -110,9 +110,9 @@ def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
         "this is the whole explanation: 0.93, not yet calibrated.",
         "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor. Probability of "
         "this verdict: 0.97.",
-        "parameters_only": "Parameter values were off, and no missing effect can be shown: the refitted simulator errs by "
-        "23 times the noise floor, and no effect of the library lowers that reliably. Re-identifying them shrinks the "
-        "held-out gap by 94 % (91–96 %). Probability of this verdict: 0.90, not yet calibrated.",
+        "parameters_only": "Parameter values were off, and no missing effect can be shown: the refitted simulator errs "
+        "by 23 times the noise floor, and no effect of the library lowers that reliably. Re-identifying them shrinks "
+        "the held-out gap by 94 % (91–96 %). Probability of this verdict: 0.90, not yet calibrated.",
         "unknown_effect": "The library explains only a part of the gap. Presliding friction at the joint and "
         "load-dependent friction at the joint are established and explain 71 % of the excess error; the rest is "
         "unknown. Probability of this verdict: 0.88, not yet calibrated.",

@@ -36,11 +36,14 @@ class LineContact:
 
     def g(self, v: float, T_in: float, wrap: float) -> float:
         """Level of dry friction at slip v, N."""
+        return stribeck(v, *self.levels(v, T_in, wrap), self.of.v_s)
+
+    def levels(self, v: float, T_in: float, wrap: float) -> tuple[float, float]:
+        """Kinetic and static level of dry friction at slips in the direction of v, N."""
         f_c = level(v, T_in, wrap, self.of)
-        f_s = f_c * self.of.mu_s / self.of.mu_c
         if self.static == "capstan":
-            f_s = abs(T_in * (1.0 - math.exp(-self.of.mu_s * wrap * sign(v)))) + self.of.eps
-        return stribeck(v, f_c, f_s, self.of.v_s)
+            return f_c, abs(T_in * (1.0 - math.exp(-self.of.mu_s * wrap * sign(v)))) + self.of.eps
+        return f_c, f_c * self.of.mu_s / self.of.mu_c
 
     def rate(self, z: float, v: float, T_in: float, wrap: float) -> float:
         """Rate of the bristle deflection z, m/s."""
@@ -57,10 +60,13 @@ class LineContact:
         stays positive, so that the sign of v is that of f - sigma_0 z."""
         c = self.of
         excess = f - c.sigma_0 * z
+        f_c, f_s = self.levels(excess, T_in, wrap)
         v = sign(excess) * 1e3 * c.v_s
         for _ in range(100):
             last = v
-            v = excess / (c.sigma_1 + c.sigma_2 - c.sigma_1 * c.sigma_0 * z * sign(excess) / self.g(v, T_in, wrap))
+            v = excess / (
+                c.sigma_1 + c.sigma_2 - c.sigma_1 * c.sigma_0 * z * sign(excess) / stribeck(v, f_c, f_s, c.v_s)
+            )
             if abs(v - last) <= 1e-14 * (abs(v) + c.v_s):
                 break
         return v
