@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tendonlab.blind.description import Lanes, Scene, System
-from tendonlab.blind.plant import Run, simulate
+from tendonlab.blind.description import Lanes, Run, Scene, System
+from tendonlab.blind.plant import simulate
 
 Values = Mapping[str, float | np.ndarray]
 

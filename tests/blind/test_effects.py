@@ -8,7 +8,7 @@ import pytest
 
 from tendonlab.blind.description import System
 from tendonlab.blind.rig import draw_rig, effect_parameters, largest_amplitude
-from tendonlab.blind.systems import RIGID_JOINT, TWO_INERTIA
+from tendonlab.blind.systems import RIGID_JOINT, SYSTEMS, TWO_INERTIA
 
 TRUTH = {
     "gear_ratio": 8.0, "motor_coulomb": 0.03, "motor_viscous": 2e-4, "motor_inertia": 1e-4, "joint_coulomb": 0.2,
@@ -58,8 +58,9 @@ def test_bristles_break_away_after_a_hundredth_of_a_radian_of_the_joint(element:
 
 
 def test_every_effect_has_a_largest_amplitude() -> None:
-    for effect in (*EXPECTED, "joint:presliding"):
-        assert largest_amplitude(SimpleNamespace(effect=effect)) > 1.0  # type: ignore[arg-type]
+    for system in SYSTEMS.values():
+        for effect in system.effects:
+            assert largest_amplitude(SimpleNamespace(effect=effect, system=system)) > 1.0  # type: ignore[arg-type]
 
 
 def test_effects_of_a_sign_are_drawn_with_both() -> None:

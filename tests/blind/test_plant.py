@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from driving import rigs
 
-from tendonlab.blind.description import Controller, Lanes, Scene
-from tendonlab.blind.plant import Run, simulate
+from tendonlab.blind.description import Controller, Lanes, Run, Scene
+from tendonlab.blind.plant import simulate
 from tendonlab.blind.systems import TWO_INERTIA
 
 RIG = {

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from tendonlab.blind import unknown
-from tendonlab.blind.description import Lanes, Scene
+from tendonlab.blind.description import Lanes, Run, Scene
 from tendonlab.blind.lanes import lanes_of, scene_of
 from tendonlab.blind.planning import plan
-from tendonlab.blind.plant import Run, simulate
+from tendonlab.blind.plant import simulate
 from tendonlab.blind.rig import draw_rig, full_truth, largest_amplitude, nominal_effects
 from tendonlab.blind.strength import tune
 from tendonlab.blind.systems import RIGID_JOINT, SYSTEMS, TWO_INERTIA
@@ -86,7 +86,7 @@ def test_cold_friction_warms_up_over_the_session() -> None:
     np.testing.assert_allclose(scale[0], 1.0 + 0.5 * np.exp(-starts / truth["warming_time"]))
 
 
-CASES = [(kind, cause) for kind in SYSTEMS for cause in unknown.causes(kind)]
+CASES = [(kind, cause) for kind, system in SYSTEMS.items() for cause in unknown.named(system.causes)]
 
 
 @pytest.mark.parametrize(("system", "cause"), CASES)
@@ -121,10 +121,10 @@ def test_unknown_causes_are_a_share_and_take_turns() -> None:
     cases = plan(3, 40, system="two_inertia", unknown_share=0.3)
     chosen = [case.effect for case in cases if case.kind == "unknown"]
     assert len(chosen) == 12
-    assert {chosen.count(cause) for cause in unknown.causes("two_inertia")} == {2}
+    assert {chosen.count(cause) for cause in unknown.named(TWO_INERTIA.causes)} == {2}
     assert [case.kind for case in cases].count("effect") == round(0.7 * 28)
     assert {case.kind for case in plan(3, 5, unknown_share=1.0)} == {"unknown"}
-    assert not any("creep" in cause for cause in unknown.causes("rigid_joint"))
+    assert not any("creep" in cause for cause in unknown.named(RIGID_JOINT.causes))
     with pytest.raises(ValueError, match=r"unknown_share = 1\.5"):
         plan(3, 5, unknown_share=1.5)
 

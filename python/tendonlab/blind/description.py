@@ -35,6 +35,44 @@ class Output(NamedTuple):
     resolution: float
 
 
+class Input(NamedTuple):
+    """A logged input: signal and column, unit, digits, and whether it is constant from sample to sample."""
+
+    name: str
+    column: str
+    unit: str
+    digits: str
+    hold: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Experiment:
+    """One run: the first input or its reference, SI, (num_samples,); `others`: the other inputs by signal; `start` s
+    within the session; `payload` kg; `repeat` label or None; `add`: what the run adds to parameters.
+    """
+
+    name: str
+    reference: Array
+    start: float
+    split: str
+    repeat: str | None = None
+    payload: float = 0.0
+    add: dict[str, float] = field(default_factory=dict)
+    others: dict[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """Logged samples: `time` s (m,), `command` (m, n): the first input, `outputs` (outputs, m, n) in the system's
+    order, `state` (states, m, n).
+    """
+
+    time: Array
+    command: Array
+    outputs: Array
+    state: Array
+
+
 class Push(NamedTuple):
     """What acts on the bodies, N*m: `force` (slots, n) without friction, the rest (n,). `rate`: of the cable."""
 
@@ -63,7 +101,7 @@ class Scene:
 
     `num_settle` first samples are not logged. `noise`: added to the readings, (outputs, num_samples, n); `resolution`:
     (outputs, n), 0 for none. `initial`: (2 slots, n) positions, then velocities; absent: the static equilibrium.
-    `known`: joint torque, N*m, (num_samples, n).
+    `known`: joint torque, N*m, (num_samples, n). `others`: further inputs by signal, SI, (num_samples, n).
     """
 
     reference: Array
@@ -74,6 +112,7 @@ class Scene:
     resolution: Array | None = None
     known: Array | None = None
     initial: Array | None = None
+    others: Mapping[str, Array] = field(default_factory=dict)
 
 
 class Mechanics(Protocol):
@@ -97,6 +136,19 @@ class Mechanics(Protocol):
         """Outputs at the middle of a step and their change over the step; `old` and `new`: velocities around it."""
 
 
+TORQUE = Input("motor_torque", "u", "N*m", "%.7f", True)
+
+
+class Strengthen(Protocol):
+    """Parameters of an effect or a cause ("sheath:stribeck", "unknown:creep") at `amplitude`; None where the usual
+    ones will do. `seed` draws the numbers that are no amplitude and not in `shape`.
+    """
+
+    def __call__(
+        self, name: str, amplitude: float, *, truth: Mapping[str, float], shape: Mapping[str, float], seed: int
+    ) -> dict[str, float] | None: ...
+
+
 @dataclass(frozen=True, kw_only=True)
 class System:
     """One kind of rig. Names of parameters are the generator's; `contract` maps those that a dataset calls otherwise.
@@ -104,32 +156,48 @@ class System:
     `typical`: parameters, SI, drawn within 25 % except for the `exact` ones. `sizes`: truth -> size of an effect of
     amplitude 1, SI, of those that are no friction. `rivals`: effects that can look like an effect. `twins`: (effect,
     measured outputs) -> effects that give the same logs, exactly. `optional`: an output, the share of the rigs that
-    lack it, and the effects that cannot be seen without it. `bandwidth`: of the position loop, rad/s; `limit`: of its
-    command, N*m. The controller acts on the first output.
+    lack it, and the effects that cannot be seen without it.
+
+    `inputs`: what is logged as input, the command first. `loop`: gains and limit of a sampled position loop that acts
+    on the first output, drawn for a rig; absent where the inputs are prescribed. `turns`: the parameter that says how
+    far the first output turns per turn of the joint. `session`: experiments of a rig, called like
+    `excitation.session`.
+
+    `forms`, `largest`: functional forms and largest amplitudes of effects that `effects.py` does not list. `causes`:
+    unknown causes. `withheld`: parameters that only an effect of the nominal simulator has, besides its own name.
+    `strengthen`: parameters of what is neither the usual friction nor one of `sizes`. `mechanics`: bodies for the
+    simulation in `plant`, or `simulate`: a simulation of its own.
     """
 
     kind: str
     title: str
     slots: tuple[Slot, ...]
+    inputs: tuple[Input, ...] = (TORQUE,)
     outputs: tuple[Output, ...]
-    optional: tuple[str, float, tuple[str, ...]]
+    optional: tuple[str, float, tuple[str, ...]] = ("", 0.0, ())
     effects: tuple[str, ...]
     nominal_effects: tuple[str, ...]
     typical: Mapping[str, float]
     exact: tuple[str, ...] = ()
     contract: Mapping[str, str]
     sizes: Callable[[Mapping[str, float]], Mapping[str, float]]
+    forms: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    largest: Mapping[str, float] = field(default_factory=dict)
+    causes: tuple[str, ...] = ()
+    withheld: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    strengthen: Strengthen | None = None
     rivals: Mapping[str, tuple[str, ...]]
     twins: Callable[[str, tuple[str, ...]], tuple[str, ...]] = lambda effect, outputs: ()
-    inertia: Callable[[Mapping[str, float]], float]
-    bandwidth: tuple[float, float]
-    limit: float
-    reference: str
+    loop: Callable[[Mapping[str, float], np.random.Generator], dict[str, float]] | None = None
+    turns: str = ""
+    session: Callable[..., list[Experiment]]
+    reference: str = ""
     sample_times: tuple[float, ...]
     duration: float
     coarse_step: float
     fine_step: float
-    mechanics: Callable[[Lanes, float], Mechanics]
+    mechanics: Callable[[Lanes, float], Mechanics] | None = None
+    simulate: Callable[[Lanes, Scene, float, int], Run] | None = None
 
     @property
     def output_names(self) -> tuple[str, ...]:

@@ -120,7 +120,7 @@ def _columns(settled: dict[int, tuple[Rig, Strength]]) -> tuple[list[Rig], list[
 def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int | None) -> Rig:
     system = SYSTEMS[wanted.system]
     effect = wanted.effect
-    effects = unknown.causes(system.kind) if wanted.kind == "unknown" else system.effects
+    effects = unknown.named(system.causes) if wanted.kind == "unknown" else system.effects
     if effect and tries >= MAX_TRIES:  # out of its reach on any of these rigs: another effect takes the place
         effect = effects[(effects.index(effect) + tries // MAX_TRIES) % len(effects)]
     return draw_rig(

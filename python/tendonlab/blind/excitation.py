@@ -5,10 +5,11 @@ them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .description import Experiment
 
 Array = NDArray[np.float64]
 Draw = np.random.Generator
@@ -16,21 +17,6 @@ Draw = np.random.Generator
 NUM_EXPERIMENTS = 10
 PAYLOAD_TORQUE = 9.81 * 0.25  # N*m per kg: the payload hangs 0.25 m from the joint axis
 PAYLOAD_INERTIA = 0.25**2
-
-
-@dataclass(frozen=True, kw_only=True)
-class Experiment:
-    """One run: joint reference, rad, (num_samples,); `start` s within the session; `payload` kg; `repeat` label or
-    None.
-    """
-
-    name: str
-    reference: Array
-    start: float
-    split: str
-    repeat: str | None = None
-    payload: float = 0.0
-    add: dict[str, float] = field(default_factory=dict)
 
 
 def slow_reversals(time: Array, draw: Draw, *, size: float = 1.0) -> Array:

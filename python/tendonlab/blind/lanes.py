@@ -65,7 +65,12 @@ def scene_of(rigs: Sequence[Rig], *, is_noisy: Sequence[bool]) -> Scene:
     settle = rigs[0].num_settle
     reference = np.stack(columns, axis=1)
     reference = np.concatenate([np.repeat(reference[:1], settle, axis=0), reference])
-    loop = {name: np.array([rig.loop[name] for rig in rigs for _ in rig.experiments]) for name in ("kp", "kd", "limit")}
+    loop = {name: np.array([rig.loop[name] for rig in rigs for _ in rig.experiments]) for name in rigs[0].loop}
+    others = {
+        name: np.stack([e.others[name] for rig in rigs for e in rig.experiments], axis=1)
+        for name in rigs[0].experiments[0].others
+    }
+    others = {name: np.concatenate([np.repeat(x[:1], settle, axis=0), x]) for name, x in others.items()}
     count = len(rigs[0].experiments)
     system, sample_time = rigs[0].system, rigs[0].sample_time
     quiet = np.zeros((len(system.outputs), reference.shape[0], count))
@@ -77,11 +82,12 @@ def scene_of(rigs: Sequence[Rig], *, is_noisy: Sequence[bool]) -> Scene:
         grid = np.repeat(system.column("resolution")[:, None] * np.asarray(is_noisy, dtype=float), count, axis=1)
     return Scene(
         reference=reference,
-        controller=Controller(**loop),
+        controller=Controller(**loop) if loop else None,
         sample_time=sample_time,
         num_settle=settle,
         noise=noise,
         resolution=grid,
+        others=others,
     )
 
 

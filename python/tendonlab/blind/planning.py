@@ -68,14 +68,13 @@ def _some(seed: int, stream: int, *, count: int, share: float) -> set[int]:
 
 
 def _mixed_kinds(seed: int, count: int, *, unknown_share: float) -> list[tuple[str, str, str]]:
-    """Half of the cases of each system, in random order."""
+    """As many cases of each system, within one, in random order."""
     names = list(SYSTEMS)
-    first = _some(seed, 2, count=count, share=0.5)
+    order = [names[i % len(names)] for i in np.random.default_rng([seed, 0, 2]).permutation(count)]
     queues = {
-        name: iter(_kinds(seed, number, system=name, unknown_share=unknown_share))
-        for name, number in zip(names, (len(first), count - len(first)), strict=True)
+        name: iter(_kinds(seed, order.count(name), system=name, unknown_share=unknown_share)) for name in set(order)
     }
-    return [next(queues[names[0] if i in first else names[1]]) for i in range(count)]
+    return [next(queues[name]) for name in order]
 
 
 def _kinds(seed: int, count: int, *, system: str, unknown_share: float) -> list[tuple[str, str, str]]:
@@ -88,7 +87,7 @@ def _kinds(seed: int, count: int, *, system: str, unknown_share: float) -> list[
     none = round(0.15 * known)
     kinds = [("effect", effect) for effect in _in_turn(SYSTEMS[system].effects, singles, draw)] + [("none", "")] * none
     kinds += [("parameters_only", "")] * (known - len(kinds))
-    kinds += [("unknown", cause) for cause in _in_turn(unknown.causes(system), num_unknown, draw)]
+    kinds += [("unknown", cause) for cause in _in_turn(unknown.named(SYSTEMS[system].causes), num_unknown, draw)]
     return [(system, *kinds[i]) for i in draw.permutation(count)]
 
 

@@ -9,12 +9,11 @@ first measured output closes the loop.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .description import Lanes, Scene
+from .description import Lanes, Run, Scene
 from .friction import Friction
 from .sensing import Reading
 from .unknown import Causes
@@ -22,22 +21,12 @@ from .unknown import Causes
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Run:
-    """Logged samples: `time` s (m,), `command` N*m (m, n), `outputs` (outputs, m, n) in the system's order,
-    `state` (2 slots, m, n).
-    """
-
-    time: Array
-    command: Array
-    outputs: Array
-    state: Array
-
-
 def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1) -> Run:
     """Run all lanes, logging every `stride`-th sample; `step` in s must divide the sample time (ValueError
     otherwise).
     """
+    if lanes.system.simulate is not None:
+        return lanes.system.simulate(lanes, scene, step, stride)
     num_steps = round(scene.sample_time / step)
     if num_steps < 1 or abs(num_steps * step - scene.sample_time) > 1e-9:
         raise ValueError(f"step = {step} s: expected a whole fraction of the sample time {scene.sample_time} s")
@@ -67,6 +56,7 @@ class _Plant:
     def __init__(self, lanes: Lanes, scene: Scene, num_steps: int) -> None:
         self.scene, self.num_steps, self.step = scene, num_steps, scene.sample_time / num_steps
         self.gain, self.offset = 1.0 + lanes.get("actuation_gain_error"), lanes.get("actuation_offset")
+        assert lanes.system.mechanics is not None  # `simulate` passes the others on
         self.mechanics = lanes.system.mechanics(lanes, self.step)
         self.kick = self.step / self.mechanics.inertia
         self.friction = _friction(lanes)

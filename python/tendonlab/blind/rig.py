@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import unknown
-from .description import SETTLE, System
-from .excitation import Experiment, session
+from .description import SETTLE, Experiment, System
 from .systems import TWO_INERTIA
 from .systems.effects import FORMS, FRICTION, LARGEST, SIGNED, draw_shape, friction
 
@@ -55,7 +54,12 @@ class Rig:
     @property
     def motor_turns(self) -> float:
         """Turns of the first output per turn of the joint."""
-        return self.truth.get("gear_ratio", 1.0)
+        return self.truth.get(self.system.turns, 1.0)
+
+    @property
+    def forms(self) -> tuple[str, ...]:
+        """Functional forms of the effect, the documented one first."""
+        return forms_of(self.system, self.effect)
 
 
 def draw_rig(
@@ -78,9 +82,10 @@ def draw_rig(
     chosen = str(draw.choice(["rich", "rich", "poor"]))
     period = system.sample_times[0] if len(system.sample_times) == 1 else float(draw.choice(system.sample_times))
     size = num_samples or round(system.duration / period)
-    loop, outputs, form = _loop(system, truth, draw), _outputs(system, effect, draw), _form(effect, draw)
+    loop = system.loop(truth, draw) if system.loop else {}
+    outputs, form = _outputs(system, effect, draw), _form(system, effect, draw)
     recorded = excitation or chosen
-    runs = session(draw, excitation=recorded, sample_time=period, num_samples=size, has_repeats=has_repeats)
+    runs = system.session(draw, excitation=recorded, sample_time=period, num_samples=size, has_repeats=has_repeats)
     return Rig(
         system=system,
         truth={name: float(f"{value:.5g}") for name, value in truth.items()},
@@ -91,20 +96,14 @@ def draw_rig(
         excitation=recorded,
         experiments=tuple(runs),
         sample_time=period,
-        loop=loop,
-        has_controller=bool(draw.random() < 0.5),
+        loop={name: float(f"{value:.4g}") for name, value in loop.items()},
+        has_controller=bool(draw.random() < 0.5) and bool(loop),
         outputs=outputs,
         noise=float(np.exp(draw.uniform(np.log(0.7), np.log(1.8)))),
         target=float(np.exp(draw.uniform(*np.log(strengths)))),
         seed=int(draw.integers(2**31)),
         num_settle=min(round(SETTLE / period), size),  # short records, as tests make them, settle shortly
     )
-
-
-def _loop(system: System, truth: dict[str, float], draw: np.random.Generator) -> dict[str, float]:
-    inertia, bandwidth = system.inertia(truth), draw.uniform(*system.bandwidth)
-    loop = {"kp": inertia * bandwidth**2, "kd": 1.4 * inertia * bandwidth, "limit": system.limit}
-    return {name: float(f"{value:.4g}") for name, value in loop.items()}
 
 
 def _outputs(system: System, effect: str, draw: np.random.Generator) -> tuple[str, ...]:
@@ -114,10 +113,14 @@ def _outputs(system: System, effect: str, draw: np.random.Generator) -> tuple[st
     return tuple(output for output in system.output_names if not (lacks and output == name))
 
 
-def _form(effect: str, draw: np.random.Generator) -> int:
+def forms_of(system: System, effect: str) -> tuple[str, ...]:
+    """Functional forms of an effect, the documented one first."""
+    return (FORMS | dict(system.forms)).get(effect.partition(":")[2], ("documented",))
+
+
+def _form(system: System, effect: str, draw: np.random.Generator) -> int:
     other, is_other = int(draw.integers(1, 3)), bool(draw.random() < 0.5)
-    forms = FORMS.get(effect.partition(":")[2], ("documented",))
-    return min(other, len(forms) - 1) if is_other else 0
+    return min(other, len(forms_of(system, effect)) - 1) if is_other else 0
 
 
 def effect_parameters(rig: Rig, amplitude: float) -> dict[str, float]:
@@ -125,6 +128,10 @@ def effect_parameters(rig: Rig, amplitude: float) -> dict[str, float]:
     truth.
     """
     element, _, effect = rig.effect.partition(":")
+    if rig.system.strengthen:
+        own = rig.system.strengthen(rig.effect, amplitude, truth=rig.truth, shape=rig.shape, seed=rig.seed)
+        if own is not None:
+            return own
     if element == unknown.PREFIX:
         return unknown.parameters(effect, amplitude, truth=rig.truth, seed=rig.seed)
     if effect in FRICTION:
@@ -135,15 +142,14 @@ def effect_parameters(rig: Rig, amplitude: float) -> dict[str, float]:
 
 def largest_amplitude(rig: Rig) -> float:
     """Physical limit of the amplitude."""
-    return (LARGEST | unknown.LARGEST)[rig.effect.partition(":")[2]]
+    return (LARGEST | unknown.LARGEST | dict(rig.system.largest))[rig.effect.partition(":")[2]]
 
 
 def full_truth(rig: Rig, amplitude: float) -> dict[str, float]:
-    """Parameters of the rig with its effect at `amplitude`; at 0 without it (a withheld Coulomb or viscous friction
-    is then 0).
+    """Parameters of the rig with its effect at `amplitude`; at 0 without it (a withheld Coulomb friction is then
+    0).
     """
-    withheld = rig.effect.partition(":")[2] in ("coulomb", "viscous")
-    is_on = bool(rig.effect) and (withheld or amplitude > 0)
+    is_on = bool(rig.effect) and (rig.effect in rig.system.nominal_effects or amplitude > 0)
     return rig.truth | (effect_parameters(rig, amplitude) if is_on else {})
 
 
@@ -154,8 +160,8 @@ def nominal_effects(rig: Rig) -> tuple[str, ...]:
 
 def nominal_parameters(rig: Rig) -> tuple[str, ...]:
     """Names of the nominal simulator's parameters, in the order of the contract."""
-    withheld = rig.effect.replace(":", "_")
-    return tuple(name for name in rig.truth if name != withheld)
+    withheld = rig.system.withheld.get(rig.effect, (rig.effect.replace(":", "_"),))
+    return tuple(name for name in rig.truth if name not in withheld)
 
 
 def free_parameters(rig: Rig) -> list[str]:

@@ -5,7 +5,7 @@ Parameters are per lane, (n,), and 0 where a lane lacks the cause.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,13 +23,12 @@ LARGEST = {  # amplitude; see `parameters`
     "fade": 0.8,
     "creep": 0.8,
 }
-ONLY_CABLES = ("creep",)
+OF_JOINTS = ("bump", "stop", "warming", "dwell", "fade")
 
 
-def causes(system: str) -> tuple[str, ...]:
-    """The unknown causes of a kind of rig, as `effect` of a case."""
-    names = [name for name in LARGEST if system == "two_inertia" or name not in ONLY_CABLES]
-    return tuple(f"{PREFIX}:{name}" for name in names)
+def named(causes: Sequence[str]) -> tuple[str, ...]:
+    """The unknown causes as `effect` of a case."""
+    return tuple(f"{PREFIX}:{name}" for name in causes)
 
 
 def parameters(cause: str, amplitude: float, *, truth: Mapping[str, float], seed: int) -> dict[str, float]:

@@ -10,14 +10,12 @@ from typing import TypeVar
 import numpy as np
 import pandas as pd
 
-from .excitation import Experiment
+from .description import Experiment, Run
 from .lanes import alike, lanes_of, scene_of
-from .plant import Run, simulate
+from .plant import simulate
 from .rig import LACKING, Rig, full_truth, nominal_effects, nominal_values
 from .strength import Strength
-from .systems.effects import FORMS
 
-COMMAND = ("motor_torque", "u", "N*m", "%.7f")  # signal, column, unit, digits
 INDISTINGUISHABLE = 3.0  # nats
 VERDICTS = {"none": "no_gap", "unknown": "unknown_effect"}  # the other kinds are called like their verdict
 Value = TypeVar("Value")
@@ -58,7 +56,8 @@ def write_dataset(rig: Rig, run: Run, folder: Path, *, name: str, description: s
     folder.mkdir(parents=True, exist_ok=True)
     signals = _signals(rig)
     for lane, experiment in enumerate(rig.experiments):
-        values = {COMMAND[0]: run.command[:, lane], rig.system.reference: rig.motor_turns * experiment.reference}
+        values = {rig.system.reference: rig.motor_turns * experiment.reference, **experiment.others}
+        values |= {rig.system.inputs[0].name: run.command[:, lane]}
         values |= {output.name: run.outputs[i, :, lane] for i, output in enumerate(rig.system.outputs)}
         table = {"t": np.char.mod("%.3f", run.time)}
         table |= {column: np.char.mod(digits, values[signal]) for signal, column, _, digits in signals}
@@ -71,7 +70,8 @@ def _signals(rig: Rig) -> list[tuple[str, str, str, str]]:
     """Signal, column, unit and digits of what is logged."""
     measured = [output[:4] for output in rig.system.outputs if output.name in rig.outputs]
     reference = (rig.system.reference, "qr", "rad", "%.7f")
-    return [COMMAND, *measured, *([reference] if rig.has_controller else [])]
+    inputs = [entry[:4] for entry in rig.system.inputs]
+    return [*inputs, *measured, *([reference] if rig.has_controller else [])]
 
 
 def dataset_toml(rig: Rig, *, name: str, description: str) -> str:
@@ -89,10 +89,11 @@ def dataset_toml(rig: Rig, *, name: str, description: str) -> str:
     ]
     if rig.has_controller:
         lines += _controller_lines(rig)
-    resolution = {output.name: output.resolution for output in rig.system.outputs}
+    resolution = {output.name: output.resolution for output in rig.system.outputs if output.resolution > 0}
+    held = {entry.name for entry in rig.system.inputs if entry.hold}
     for signal, column, unit, _ in _signals(rig):
         lines += ["", f"[signals.{signal}]", f"column = {_toml(column)}", f"unit = {_toml(unit)}"]
-        if signal == COMMAND[0]:
+        if signal in held:
             lines.append("hold = true")
         if signal in resolution:
             lines.append(f"resolution = {resolution[signal]:.7g}")
@@ -163,7 +164,7 @@ def _drawn(rig: Rig, strength: Strength, redrawn: Sequence[str]) -> dict[str, ob
         "excitation": rig.excitation,
         "controller": rig.has_controller,
         "repeats": rig.has_repeats,
-        "form": FORMS.get(effect, ("documented",))[rig.form] if rig.kind == "effect" else "documented",
+        "form": rig.forms[rig.form] if rig.kind == "effect" else "documented",
         "is_documented_form": rig.form == 0 or rig.kind != "effect",
         "gap_noise": round(strength.gap_noise, 4),
         "target": round(rig.target, 4) if rig.kind in LACKING else 0.0,

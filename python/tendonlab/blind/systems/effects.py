@@ -44,6 +44,14 @@ def draw_shape(draw: np.random.Generator) -> dict[str, float]:
     }
 
 
+def position_loop(
+    draw: np.random.Generator, *, inertia: float, bandwidth: tuple[float, float], limit: float
+) -> dict[str, float]:
+    """A PD loop of `inertia`, kg*m^2, of a `bandwidth`, rad/s, drawn from this range; `limit`: of its torque, N*m."""
+    speed = draw.uniform(*bandwidth)
+    return {"kp": inertia * speed**2, "kd": 1.4 * inertia * speed, "limit": limit}
+
+
 def friction(
     name: str, amplitude: float, *, truth: Mapping[str, float], shape: Mapping[str, float]
 ) -> dict[str, float]:

@@ -11,8 +11,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from tendonlab.blind.description import Array, Lanes, Output, Push, Scene, Slot, System
+from tendonlab.blind.excitation import session
+from tendonlab.blind.unknown import OF_JOINTS
 
-from .effects import FRICTION
+from .effects import FRICTION, position_loop
 
 OUTPUTS = (
     Output("joint_angle", "q", "rad", "%.7f", 5e-5, 2e-4, 0.99, 2 * np.pi / 131072),
@@ -109,9 +111,9 @@ RIGID_JOINT = System(
     sizes=sizes,
     rivals=RIVALS,
     twins=twins,
-    inertia=lambda truth: truth["joint_inertia"],
-    bandwidth=(12.0, 18.0),
-    limit=8.0,
+    causes=OF_JOINTS,
+    loop=lambda truth, draw: position_loop(draw, inertia=truth["joint_inertia"], bandwidth=(12.0, 18.0), limit=8.0),
+    session=session,
     reference="reference_angle",
     sample_times=(0.01, 0.004, 0.001),
     duration=5.0,

@@ -12,9 +12,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from tendonlab.blind.description import Array, Lanes, Output, Push, Scene, Slot, System
-from tendonlab.blind.unknown import creep
+from tendonlab.blind.excitation import session
+from tendonlab.blind.unknown import OF_JOINTS, creep
 
-from .effects import FRICTION
+from .effects import FRICTION, position_loop
 
 OUTPUTS = (
     Output("motor_angle", "qm", "rad", "%.6f", 2e-4, 8e-4, 0.995, 2 * np.pi / 16384),
@@ -162,9 +163,10 @@ TWO_INERTIA = System(
     contract={},
     sizes=sizes,
     rivals=RIVALS,
-    inertia=reflected_inertia,
-    bandwidth=(32.0, 45.0),
-    limit=0.8,
+    causes=(*OF_JOINTS, "creep"),
+    loop=lambda truth, draw: position_loop(draw, inertia=reflected_inertia(truth), bandwidth=(32.0, 45.0), limit=0.8),
+    turns="gear_ratio",
+    session=session,
     reference="reference_angle",
     sample_times=(0.002,),
     duration=4.0,
