@@ -33,7 +33,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     )
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
-    text = "two_inertia (default), rigid_joint, or mixed for both"
+    text = "kind of rig, or mixed for all that the protocol draws (default two_inertia)"
     drawing.add_argument("--system", default="two_inertia", metavar="KIND", help=text)
     text = "share of the cases that repeat an experiment, 0 to 1 (default 1)"
     drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)

@@ -132,6 +132,9 @@ class Mechanics(Protocol):
     def measure(self, q: Array, v: Array) -> list[Array]:
         """What perfect sensors would read."""
 
+    def take(self, others: Mapping[str, Array]) -> None:
+        """Take the further inputs of the next sample."""
+
     def within(self, q: Array, old: Array, new: Array, push: Push) -> tuple[list[Array], list[Array]]:
         """Outputs at the middle of a step and their change over the step; `old` and `new`: velocities around it."""
 
@@ -198,6 +201,11 @@ class System:
     fine_step: float
     mechanics: Callable[[Lanes, float], Mechanics] | None = None
     simulate: Callable[[Lanes, Scene, float, int], Run] | None = None
+
+    @property
+    def commands_torque(self) -> bool:
+        """Whether the command is a torque; otherwise the rig controls itself, and its mechanics has the actuator."""
+        return self.inputs[0].unit == "N*m"
 
     @property
     def output_names(self) -> tuple[str, ...]:

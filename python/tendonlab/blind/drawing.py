@@ -40,7 +40,7 @@ def draw(
     """Draw `count` cases into `out`/cases and return `out`; about 70 % lack one effect, 15 % nothing, 15 % have wrong
     parameters only.
 
-    `system`: "two_inertia", "rigid_joint", or "mixed" for both.
+    `system`: a kind of `SYSTEMS`, or "mixed" for all of them.
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
     The share `unknown_share` lacks an effect that the library does not have either.
     The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`.

@@ -15,8 +15,7 @@ Array = NDArray[np.float64]
 Draw = np.random.Generator
 
 NUM_EXPERIMENTS = 10
-PAYLOAD_TORQUE = 9.81 * 0.25  # N*m per kg: the payload hangs 0.25 m from the joint axis
-PAYLOAD_INERTIA = 0.25**2
+GRAVITY = 9.81  # m/s^2
 
 
 def slow_reversals(time: Array, draw: Draw, *, size: float = 1.0) -> Array:
@@ -105,10 +104,11 @@ POOR: tuple[tuple[Shape, float, bool], ...] = (
 
 
 def session(
-    draw: Draw, *, excitation: str, sample_time: float, num_samples: int, has_repeats: bool = True
+    draw: Draw, *, excitation: str, sample_time: float, num_samples: int, has_repeats: bool = True, arm: float = 0.25
 ) -> list[Experiment]:
     """Ten experiments, "rich" or "poor", in the order recorded; one repeated at the start, in the middle and at the
-    end. Without repeats, other motions of the same kind take the places of the second and third.
+    end. Without repeats, other motions of the same kind take the places of the second and third. The payload hangs
+    `arm` m from the axis.
     """
     plans = RICH if excitation == "rich" else POOR
     time: Array = np.arange(num_samples, dtype=float) * sample_time
@@ -124,7 +124,7 @@ def session(
             slots.append(("train", label, next(again), False))
         slots.append((split, None, _reference(plan, time, draw), plan[2]))
     slots.append(("train", label, next(again), False))
-    return _runs(slots, draw, seconds=num_samples * sample_time)
+    return _runs(slots, draw, seconds=num_samples * sample_time, arm=arm)
 
 
 def _fresh(plan: tuple[Shape, float, bool], time: Array, draw: Draw) -> list[Array]:
@@ -133,12 +133,14 @@ def _fresh(plan: tuple[Shape, float, bool], time: Array, draw: Draw) -> list[Arr
     return [_reference(plan, time, fresh) for _ in range(2)]
 
 
-def _runs(slots: list[tuple[str, str | None, Array, bool]], draw: Draw, *, seconds: float) -> list[Experiment]:
+def _runs(
+    slots: list[tuple[str, str | None, Array, bool]], draw: Draw, *, seconds: float, arm: float
+) -> list[Experiment]:
     """The experiments of (split, repeat, reference, whether with payload) in turn, with breaks between them."""
     mass, start, runs = float(np.round(draw.uniform(0.12, 0.25), 2)), 0.0, []
     for i, (split, repeat, reference, loaded) in enumerate(slots):
         kg = mass if loaded else 0.0
-        add = {"gravity_torque": kg * PAYLOAD_TORQUE, "joint_inertia": kg * PAYLOAD_INERTIA} if loaded else {}
+        add = {"gravity_torque": kg * (GRAVITY * arm), "joint_inertia": kg * (arm * arm)} if loaded else {}
         add = {name: float(f"{value:.6g}") for name, value in add.items()}
         runs.append(
             Experiment(

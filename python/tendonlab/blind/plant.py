@@ -42,6 +42,12 @@ def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1)
     return Run(time=time, command=command, outputs=np.moveaxis(outputs, 1, 0), state=np.moveaxis(state, 1, 0))
 
 
+def beyond_deadband(torque: Array, deadband: Array, *, rounded: NDArray[np.bool_]) -> Array:
+    """What a deadband leaves of a torque, N*m, with a corner or rounded."""
+    smooth = deadband * np.tanh(torque / np.where(deadband > 0, deadband, 1.0))
+    return np.asarray(torque - np.where(rounded, smooth, np.clip(torque, -deadband, deadband)))
+
+
 def _friction(lanes: Lanes) -> Friction:
     slots = lanes.system.slots
     laws = Friction(lanes.parameters, slots=slots, scale=lanes.scale, form=lanes.form)
@@ -54,8 +60,12 @@ def _friction(lanes: Lanes) -> Friction:
 
 class _Plant:
     def __init__(self, lanes: Lanes, scene: Scene, num_steps: int) -> None:
-        self.scene, self.num_steps, self.step = scene, num_steps, scene.sample_time / num_steps
-        self.gain, self.offset = 1.0 + lanes.get("actuation_gain_error"), lanes.get("actuation_offset")
+        self.lanes, self.scene, self.num_steps, self.step = lanes, scene, num_steps, scene.sample_time / num_steps
+        drives = lanes.system.commands_torque
+        self.gain, self.offset = (
+            1.0 + drives * lanes.get("actuation_gain_error"),
+            drives * lanes.get("actuation_offset"),
+        )
         assert lanes.system.mechanics is not None  # `simulate` passes the others on
         self.mechanics = lanes.system.mechanics(lanes, self.step)
         self.kick = self.step / self.mechanics.inertia
@@ -70,7 +80,7 @@ class _Plant:
         self.has_sensor_delay = any(reading.capture for reading in self.readings)
         self.causes = Causes(lanes, step=self.step, sample_time=scene.sample_time)
         self.is_plain = self.friction.is_plain and not self.causes.acts_on_joint
-        self.deadband, self.rounded = lanes.get("actuation_deadband"), lanes.form != 0
+        self.deadband, self.rounded = drives * lanes.get("actuation_deadband"), lanes.form != 0
         self._prepare_actuation(lanes.get("actuation_delay"))
         start = self.mechanics.rest(scene) if scene.initial is None else scene.initial
         bodies = len(start) // 2
@@ -114,14 +124,18 @@ class _Plant:
 
     def _advance(self, k: int, command: Array) -> None:
         known = None if self.scene.known is None else self.scene.known[k]
+        if self.scene.others:
+            self.mechanics.take({name: values[k] for name, values in self.scene.others.items()})
         if self.commands is None:
             self.commands = np.repeat(command[None, :], int(self.late.max()) + 2, axis=0)
         self.commands = np.concatenate([command[None, :], self.commands[:-1]])
         lanes = np.arange(command.size)
         new, old = self.commands[self.late, lanes], self.commands[self.late + 1, lanes]
         if self.deadband.any():
-            new, old = self._beyond_deadband(new), self._beyond_deadband(old)
-        torque = self.causes.drive(new * self.gain + self.offset)
+            new, old = (beyond_deadband(x, self.deadband, rounded=self.rounded) for x in (new, old))
+        torque = new * self.gain + self.offset
+        if self.lanes.system.commands_torque:
+            torque = self.causes.drive(torque)
         before = old * self.gain + self.offset
         self.q += 0.5 * self.step * self.v
         for j in range(self.num_steps):
@@ -129,11 +143,6 @@ class _Plant:
             self._kick(drive, known, j)
             self.q += self.step * self.v
         self.q -= 0.5 * self.step * self.v
-
-    def _beyond_deadband(self, command: Array) -> Array:
-        width = np.where(self.deadband > 0, self.deadband, 1.0)
-        smooth = self.deadband * np.tanh(command / width)
-        return np.asarray(command - np.where(self.rounded, smooth, np.clip(command, -self.deadband, self.deadband)))
 
     def _kick(self, drive: Array, known: Array | None, index: int) -> None:
         old, laws = self.v, self.friction

@@ -1,8 +1,9 @@
 """The kinds of rigs that the protocol draws, by name."""
 
 from .rigid_joint import RIGID_JOINT
+from .servo_pendulum import SERVO_PENDULUM
 from .two_inertia import TWO_INERTIA
 
-__all__ = ["RIGID_JOINT", "SYSTEMS", "TWO_INERTIA"]
+__all__ = ["RIGID_JOINT", "SERVO_PENDULUM", "SYSTEMS", "TWO_INERTIA"]
 
-SYSTEMS = {system.kind: system for system in (TWO_INERTIA, RIGID_JOINT)}
+SYSTEMS = {system.kind: system for system in (TWO_INERTIA, RIGID_JOINT, SERVO_PENDULUM)}

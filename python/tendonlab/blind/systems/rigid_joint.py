@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tendonlab.blind.description import Array, Lanes, Output, Push, Scene, Slot, System
+from tendonlab.blind.description import Array, Lanes, Mechanics, Output, Push, Scene, Slot, System
 from tendonlab.blind.excitation import session
 from tendonlab.blind.unknown import OF_JOINTS
 
@@ -58,7 +58,7 @@ def twins(effect: str, outputs: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(other for pair in pairs if effect in pair for other in pair if other != effect)
 
 
-class RigidJoint:
+class RigidJoint(Mechanics):
     """The bodies of n lanes: one row."""
 
     def __init__(self, lanes: Lanes, step: float) -> None:

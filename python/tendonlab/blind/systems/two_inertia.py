@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tendonlab.blind.description import Array, Lanes, Output, Push, Scene, Slot, System
+from tendonlab.blind.description import Array, Lanes, Mechanics, Output, Push, Scene, Slot, System
 from tendonlab.blind.excitation import session
 from tendonlab.blind.unknown import OF_JOINTS, creep
 
@@ -72,7 +72,7 @@ def reflected_inertia(truth: Mapping[str, float]) -> float:
     return truth["motor_inertia"] + truth["joint_inertia"] / truth["gear_ratio"] ** 2
 
 
-class TwoInertia:
+class TwoInertia(Mechanics):
     """The bodies of n lanes: row 0 the motor, row 1 the joint."""
 
     def __init__(self, lanes: Lanes, step: float) -> None:
