@@ -100,13 +100,15 @@ def test_every_effect_has_its_turn():
     assert cases == plan(1, 40) != plan(2, 40)
 
 
-def test_mixed_cases_are_half_of_each_system():
+def test_mixed_cases_are_of_all_systems_alike():
     cases = plan(1, 41, system="mixed")
     systems = [case.system for case in cases]
-    assert sorted(systems.count(kind) for kind in SYSTEMS) == [20, 21]
+    counts = [systems.count(kind) for kind in SYSTEMS]
+    assert sum(counts) == 41
+    assert max(counts) - min(counts) <= 1
     for case in cases:
         assert not case.effect or case.effect in SYSTEMS[case.system].effects
-    with pytest.raises(ValueError, match="system = 'bowden': expected one of two_inertia, rigid_joint, mixed"):
+    with pytest.raises(ValueError, match="system = 'bowden': expected one of two_inertia, rigid_joint, .*, mixed"):
         plan(1, 4, system="bowden")
 
 
