@@ -108,7 +108,7 @@ def test_mixed_cases_are_of_all_systems_alike():
     assert max(counts) - min(counts) <= 1
     for case in cases:
         assert not case.effect or case.effect in SYSTEMS[case.system].effects
-    with pytest.raises(ValueError, match="system = 'bowden': expected one of two_inertia, rigid_joint, .*, mixed"):
+    with pytest.raises(ValueError, match=r"system = 'bowden': expected one of two_inertia, rigid_joint, .*, mixed"):
         plan(1, 4, system="bowden")
 
 

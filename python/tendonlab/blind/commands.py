@@ -39,6 +39,8 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
     text = "share of the cases whose cause the library lacks, 0 to 1 (default 0)"
     drawing.add_argument("--unknown", type=float, default=0.0, metavar="SHARE", dest="unknown_share", help=text)
+    text = "of the cases that lack an effect, share that lacks a second one, 0 to 1 (default 0)"
+    drawing.add_argument("--pairs", type=float, default=0.0, metavar="SHARE", help=text)
     text = "least and largest gap/noise of an effect (default 1 6)"
     drawing.add_argument(
         "--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=("LEAST", "LARGEST"), help=text
@@ -69,7 +71,7 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
-    options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "unknown_share", "jobs")}
+    options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "unknown_share", "pairs", "jobs")}
     print(draw(given.seed, given.count, given.out, strengths=tuple(given.strengths), **options))
     return 0
 

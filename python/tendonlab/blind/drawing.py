@@ -12,9 +12,10 @@ import numpy as np
 from tqdm import tqdm
 
 from . import unknown
+from .pairs import paired, tuned
 from .planning import Wanted, plan
 from .rig import LACKING, Rig, draw_rig
-from .strength import Strength, tune
+from .strength import Strength
 from .systems import SYSTEMS
 from .write import record, sealed_toml, write_dataset
 
@@ -31,6 +32,7 @@ def draw(
     system: str = "two_inertia",
     repeats: float = 1.0,
     unknown_share: float = 0.0,
+    pairs: float = 0.0,
     strengths: tuple[float, float] = (1.0, 6.0),
     jobs: int = 2,
     num_samples: int | None = None,
@@ -42,14 +44,17 @@ def draw(
 
     `system`: a kind of `SYSTEMS`, or "mixed" for all of them.
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
-    The share `unknown_share` lacks an effect that the library does not have either.
+    The share `unknown_share` lacks an effect that the library does not have either. Of those that lack an effect the
+    share `pairs` lacks a second one.
     The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`.
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
     FileExistsError if one of the two folders exists.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
-    planned = plan(seed, count, system=system, repeats=repeats, unknown_share=unknown_share, strengths=strengths)
+    planned = plan(
+        seed, count, system=system, repeats=repeats, unknown_share=unknown_share, pairs=pairs, strengths=strengths
+    )
     wanted = list(enumerate(planned))
     _make_folders(cases, sealed)
     batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
@@ -82,7 +87,7 @@ def _draw_batch(
     num_samples: int | None,
     step: float | None,
 ) -> int:
-    settled: dict[int, tuple[Rig, Strength]] = {}
+    settled: dict[int, tuple[Rig, list[Strength]]] = {}
     redrawn: dict[int, list[str]] = {index: [] for index, _ in batch}
     open_cases = dict(batch)
     while open_cases:
@@ -90,17 +95,18 @@ def _draw_batch(
             i: _rig(i, wanted, seed=seed, tries=len(redrawn[i]), num_samples=num_samples)
             for i, wanted in open_cases.items()
         }
-        for (i, rig), strength in zip(rigs.items(), tune(list(rigs.values())), strict=True):
-            if rig.kind not in LACKING or strength.met or _is_enough(strength, batch[0][1]):
-                settled[i] = (rig, strength)
+        for i, (rig, strengths) in tuned(rigs).items():
+            if rig.kind not in LACKING or all(s.met or _is_enough(s, batch[0][1]) for s in strengths):
+                settled[i] = (rig, strengths)
                 del open_cases[i]
             else:
                 redrawn[i].append(rig.effect)
-    for i, run in zip(settled, record(*_columns(settled), step=step), strict=True):
+    rigs, firsts = {i: rig for i, (rig, _) in settled.items()}, [strengths[0] for _, strengths in settled.values()]
+    for (i, rig), run in zip(rigs.items(), record(list(rigs.values()), firsts, step=step), strict=True):
         name = f"case-{i + 1:03d}"
-        rig, strength = settled[i]
         write_dataset(rig, run, cases / name, name=name, description=_description(rig))
-        (sealed / f"{name}.toml").write_text(sealed_toml(rig, strength, redrawn=redrawn[i]), encoding="utf-8")
+        text = sealed_toml(rig, *settled[i][1], redrawn=redrawn[i])
+        (sealed / f"{name}.toml").write_text(text, encoding="utf-8")
     return len(batch)
 
 
@@ -113,17 +119,13 @@ def _description(rig: Rig) -> str:
     return f"{rig.system.title}, recorded at {round(1.0 / rig.sample_time)} Hz; BSD-3-Clause."
 
 
-def _columns(settled: dict[int, tuple[Rig, Strength]]) -> tuple[list[Rig], list[Strength]]:
-    return [rig for rig, _ in settled.values()], [strength for _, strength in settled.values()]
-
-
 def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int | None) -> Rig:
     system = SYSTEMS[wanted.system]
     effect = wanted.effect
     effects = unknown.named(system.causes) if wanted.kind == "unknown" else system.effects
     if effect and tries >= MAX_TRIES:  # out of its reach on any of these rigs: another effect takes the place
         effect = effects[(effects.index(effect) + tries // MAX_TRIES) % len(effects)]
-    return draw_rig(
+    rig = draw_rig(
         np.random.default_rng([seed, index + 1, tries]),
         effect=effect,
         kind=wanted.kind,
@@ -132,3 +134,6 @@ def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int 
         has_repeats=wanted.has_repeats,
         strengths=wanted.strengths,
     )
+    if not wanted.is_pair:
+        return rig
+    return paired(rig, np.random.default_rng([seed, index + 1, tries, 1]), strengths=wanted.strengths)

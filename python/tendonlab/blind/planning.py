@@ -17,13 +17,14 @@ MIXED = "mixed"
 @dataclass(frozen=True, kw_only=True)
 class Wanted:
     """A case to draw: its system, kind, the effect that its simulator lacks ("" for none, "unknown:bump" for a cause
-    that the library lacks as well), whether it repeats an experiment.
+    that the library lacks as well), whether it repeats an experiment, and whether it lacks a second effect.
     """
 
     system: str
     kind: str
     effect: str
     has_repeats: bool
+    is_pair: bool = False
     strengths: tuple[float, float] = (1.0, 6.0)
 
 
@@ -34,17 +35,19 @@ def plan(
     system: str = "two_inertia",
     repeats: float = 1.0,
     unknown_share: float = 0.0,
+    pairs: float = 0.0,
     strengths: tuple[float, float] = (1.0, 6.0),
 ) -> list[Wanted]:
     """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
 
-    The draw of the repeats changes nothing else: the cases of a seed are the same with and without repeats. Raises
-    ValueError if count < 1, if `repeats` or `unknown_share` is no share, if `strengths` are no range, and for another
+    `pairs`: share of the cases that lack an effect which lack a second one. The draw of the repeats changes nothing
+    else: the cases of a seed are the same with and without repeats. Raises ValueError if count < 1, if `repeats`,
+    `unknown_share` or `pairs` is no share, if `strengths` are no range, and for another
     system.
     """
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
-    for name, share in (("repeats", repeats), ("unknown_share", unknown_share)):
+    for name, share in (("repeats", repeats), ("unknown_share", unknown_share), ("pairs", pairs)):
         if not 0.0 <= share <= 1.0:
             raise ValueError(f"{name} = {share}: expected a share from 0 to 1")
     least, largest = strengths
@@ -55,8 +58,12 @@ def plan(
     repeated = _some(seed, 1, count=count, share=repeats)
     kinds = _mixed_kinds if system == MIXED else partial(_kinds, system=system)
     drawn = kinds(seed, count, unknown_share=unknown_share)
+    singles = [i for i, (_, kind, _) in enumerate(drawn) if kind == "effect"]
+    paired = {singles[k] for k in _some(seed, 3, count=len(singles), share=pairs)}
     return [
-        Wanted(system=name, kind=kind, effect=effect, has_repeats=i in repeated, strengths=strengths)
+        Wanted(
+            system=name, kind=kind, effect=effect, has_repeats=i in repeated, is_pair=i in paired, strengths=strengths
+        )
         for i, (name, kind, effect) in enumerate(drawn)
     ]
 

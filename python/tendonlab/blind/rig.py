@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,7 +22,9 @@ class Rig:
 
     `truth`: the rig without the effect. `shape`: the drawn numbers that fix the effect, except for its amplitude.
     `noise`: factor on the floor. `kind`: "effect", "unknown", "none" or "parameters_only". `loop`: kp, kd, limit.
-    `outputs`: those that were measured. `has_bounded_error`: nominal values are 10 to 20 % off, not normally drawn.
+    `second`: another effect that the simulator lacks, in the same functional form; its target and amplitude.
+    `outputs`: those that were measured.
+    `has_bounded_error`: nominal values are 10 to 20 % off, not normally drawn.
     """
 
     system: System
@@ -42,6 +44,9 @@ class Rig:
     seed: int
     num_settle: int
     has_bounded_error: bool = False
+    second: str = ""
+    second_target: float = 0.0
+    second_amplitude: float = 0.0
 
     @property
     def has_repeats(self) -> bool:
@@ -55,6 +60,11 @@ class Rig:
     def motor_turns(self) -> float:
         """Turns of the first output per turn of the joint."""
         return self.truth.get(self.system.turns, 1.0)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Effects and causes that the nominal simulator lacks."""
+        return tuple(name for name in (self.effect, self.second) if name)
 
     @property
     def forms(self) -> tuple[str, ...]:
@@ -150,17 +160,20 @@ def full_truth(rig: Rig, amplitude: float) -> dict[str, float]:
     0).
     """
     is_on = bool(rig.effect) and (rig.effect in rig.system.nominal_effects or amplitude > 0)
-    return rig.truth | (effect_parameters(rig, amplitude) if is_on else {})
+    first = effect_parameters(rig, amplitude) if is_on else {}
+    second = effect_parameters(replace(rig, effect=rig.second), rig.second_amplitude) if rig.second else {}
+    return rig.truth | second | first
 
 
 def nominal_effects(rig: Rig) -> tuple[str, ...]:
-    """What the nominal simulator contains: all but the withheld one."""
-    return tuple(name for name in rig.system.nominal_effects if name != rig.effect)
+    """What the nominal simulator contains: all but what is withheld."""
+    return tuple(name for name in rig.system.nominal_effects if name not in rig.missing)
 
 
 def nominal_parameters(rig: Rig) -> tuple[str, ...]:
     """Names of the nominal simulator's parameters, in the order of the contract."""
-    withheld = rig.system.withheld.get(rig.effect, (rig.effect.replace(":", "_"),))
+    groups = (rig.system.withheld.get(effect, (effect.replace(":", "_"),)) for effect in rig.missing)
+    withheld = {name for group in groups for name in group}
     return tuple(name for name in rig.truth if name not in withheld)
 
 

@@ -16,6 +16,7 @@ from .runner import REPORT, VERDICTS, sha256
 
 BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
 SURE = 0.8  # probability above which a report names an effect with confidence
+PAIRS = ("pair_both", "pair_one", "pair_wrong")
 HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
 
 
@@ -120,6 +121,8 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
         "seconds": float(report.get("seconds", np.nan)),
     }
     right = {*truth["effects"], *truth.get("accept", [])}
+    if len(truth["effects"]) > 1:
+        return found | _pair(right, set(selected), report["verdict"])
     if truth["verdict"] == "unknown_effect":
         named = [float(e["probability"]) for e, name in zip(ranked, names, strict=True) if name in selected]
         return found | {"unknown_hit": found["verdict_hit"], "unknown_named": failed or max(named, default=0.0) > SURE}
@@ -136,6 +139,12 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
     }
 
 
+def _pair(right: set[str], selected: set[str], verdict: str) -> dict[str, object]:
+    """Of two missing effects both, or one, are selected and established; what is selected beside them is wrong."""
+    count = len(right & selected) if verdict in ("effect", "unknown_effect") else 0
+    return {"pair_both": count >= 2, "pair_one": count >= 1, "pair_wrong": bool(selected - right)}
+
+
 def _part(name: str, index: int) -> str:
     return name.partition(":")[index]
 
@@ -146,11 +155,11 @@ def _shrinkage(report: Mapping[str, Any]) -> float:
 
 
 def _tables(cases: pd.DataFrame) -> Score:
-    for name in (*HITS, "false_alarm", "unknown_hit", "unknown_named"):
+    for name in (*HITS, *PAIRS, "false_alarm", "unknown_hit", "unknown_named"):
         if name not in cases:
             cases[name] = np.nan
         cases[name] = cases[name].astype(float)
-    single = cases[cases["effect"] != ""]
+    single = _single(cases)
     cells = pd.cut(single["gap_noise"].astype(float), list(BINS), right=False).astype(str)
     return Score(
         cases=cases,
@@ -171,10 +180,16 @@ def _parts(cases: pd.DataFrame) -> dict[str, pd.DataFrame]:
     return {name: part for name, part in parts.items() if len(part)}
 
 
+def _single(cases: pd.DataFrame) -> pd.DataFrame:
+    return cases[(cases["effect"] != "") & cases["pair_both"].isna()]
+
+
 def _summary(cases: pd.DataFrame) -> dict[str, float]:
-    single = cases[cases["effect"] != ""]
+    single = _single(cases)
     summary = {"cases": float(len(cases)), "single effects": float(len(single))}
     summary |= {name.replace("_", " "): _mean(single[name]) for name in HITS if name != "verdict_hit"}
+    if cases["pair_both"].notna().any():
+        summary |= {name.replace("_", " "): _mean(cases[name]) for name in PAIRS}
     summary["verdict right"] = _mean(cases["verdict_hit"])
     for truth in ("no_gap", "parameters_only"):
         summary[f"false alarms on {truth}"] = _mean(cases.loc[cases["truth"] == truth, "false_alarm"])

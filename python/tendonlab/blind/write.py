@@ -130,13 +130,18 @@ def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
     return lines
 
 
-def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) -> str:
-    """Text of the truth file: effects, verdict, accept, [truth] parameters, [draw] how the case came about."""
+def sealed_toml(rig: Rig, strength: Strength, *second: Strength, redrawn: Sequence[str] = ()) -> str:
+    """Text of the truth file: effects, verdict, accept, [truth] parameters, [draw] how the case came about.
+
+    `second`: of the second effect, where the rig has one.
+    """
     verdict = VERDICTS.get(rig.kind, rig.kind)
-    twins = rig.system.twins(rig.effect, rig.outputs)
-    accept = [n for n, nats in strength.separation.items() if nats < INDISTINGUISHABLE or n in twins]
+    separation = {name: nats for each in (strength, *second) for name, nats in each.separation.items()}
+    twins = {twin for effect in rig.missing for twin in rig.system.twins(effect, rig.outputs)}
+    accept = [n for n, nats in separation.items() if nats < INDISTINGUISHABLE or n in twins]
+    effects = list(rig.missing) if rig.kind == "effect" else []
     truth = full_truth(rig, strength.amplitude)
-    lines = ['format = "tendonlab-sealed/1"', f"effects = {_toml([rig.effect] if rig.kind == 'effect' else [])}"]
+    lines = ['format = "tendonlab-sealed/1"', f"effects = {_toml(effects)}"]
     lines += [
         f"verdict = {_toml(verdict)}",
         f"accept = {_toml(accept)}",
@@ -145,10 +150,10 @@ def sealed_toml(rig: Rig, strength: Strength, *, redrawn: Sequence[str] = ()) ->
         *_table(_stated(rig, truth)),
         "",
         "[draw]",
-        *_table(_drawn(rig, strength, redrawn)),
+        *_table(_drawn(rig, strength, redrawn) | _drawn_second(*second)),
     ]
-    if strength.separation:
-        nats = {name: float(f"{value:.4g}") for name, value in strength.separation.items()}
+    if separation:
+        nats = {name: float(f"{value:.4g}") for name, value in separation.items()}
         lines += ["", "[separation]  # nats that tell the effect from its rivals; accepted below 3", *_table(nats)]
     return "\n".join(lines) + "\n"
 
@@ -176,6 +181,10 @@ def _drawn(rig: Rig, strength: Strength, redrawn: Sequence[str]) -> dict[str, ob
         "floor": [float(f"{value:.4g}") for value in strength.floor],
         "redrawn": list(redrawn),
     }
+
+
+def _drawn_second(*second: Strength) -> dict[str, object]:
+    return {f"second_{name}": round(getattr(s, name), 4) for s in second for name in ("gap_noise", "amplitude")}
 
 
 def _table(values: Mapping[str, object]) -> list[str]:
