@@ -18,6 +18,7 @@ from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
 from tendonlab.fitting.noise import Floor, blocks_of, white
 from tendonlab.fitting.priors import free_parameters
+from tendonlab.fitting.starts import reseated
 from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
@@ -174,8 +175,9 @@ class Fitter:
         return problem.solve(cancel=self.cancel, max_iterations=max_iterations, tolerance=tolerance, goal=goal)
 
     def settled(self, fit: Fitted) -> Fitted:
-        """Without repeats: the fit again under the noise that it leaves itself, until that stays, or its evidence
-        falls. Its rows count by the memory of its own residuals."""
+        """The fit with its runs reseated. Without repeats: again under the noise that it leaves itself, until that
+        stays, or its evidence falls. Its rows count by the memory of its own residuals."""
+        fit = self._reseated(fit)
         if self.floor.repeated:
             return fit
         for _ in range(NUM_RELEVELLED):
@@ -187,6 +189,12 @@ class Fitter:
                 break
             fit = again
         return fit.counted(fit.own_shares)
+
+    def _reseated(self, fit: Fitted) -> Fitted:
+        """The fit, again where some runs fit better from the initial states that are believed of them."""
+        floor = replace(self.floor, sd=fit.levels.tolist())
+        problem = pose(self.case, floor, fit.system, added=fit.added, initial=fit.initial)
+        return reseated(problem, fit, self.cancel, steps=0)
 
     def releveled(self, fit: Fitted) -> Fitted:
         """Without repeats: the fit as it is, under the noise that it leaves itself."""

@@ -35,14 +35,14 @@ def cooled(problem: Problem, cancel: _core.Cancel) -> Problem:
     return problem.at(fit.system, fit.initial)
 
 
-def reseated(problem: Problem, fit: Fitted, cancel: _core.Cancel) -> Fitted:
+def reseated(problem: Problem, fit: Fitted, cancel: _core.Cancel, *, steps: int = 2 * STEPS) -> Fitted:
     """The `fit`, again with the initial states of some runs found anew from what is believed of them: early steps of a
-    fit may leave a run that starts at rest in a place where stiction holds it."""
+    fit may leave a run that starts at rest in a place where stiction holds it. `steps`: iterations for these states."""
     for _ in range(NUM_RESTARTS):
         if cancel.is_set() or not any(len(run.own) for run in fit.runs):
             return fit
         alone = replace(problem, free=(), system=fit.system, initial=())
-        fresh = alone.solve(cancel=cancel, max_iterations=2 * STEPS)
+        fresh = alone.solve(cancel=cancel, max_iterations=steps) if steps else alone.linearise()
         better = [_cost(new) < BETTER * _cost(old) for new, old in zip(fresh.runs, fit.runs, strict=True)]
         if not any(better):
             return fit
