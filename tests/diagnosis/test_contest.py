@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.search import contest
-from tendonlab.diagnosis.search.contest import Round, _explains_enough, _worth_adding, probabilities
+from tendonlab.diagnosis.search.contest import Round, _worth_adding, explains_enough, probabilities
 from tendonlab.diagnosis.search.refit import _goal, strained
 from tendonlab.diagnosis.search.screen import Screened, _score, _starts, _unit
 from tendonlab.diagnosis.search.screen import _Score as Score
@@ -106,7 +106,7 @@ def test_without_repeats_an_effect_must_remove_much_of_what_is_left(
 ) -> None:
     base: Any = SimpleNamespace(mean_square=10.0)
     trials = [trial("a", 100.0, mean_square=left), *(trial("b", gain, mean_square=9.0) for gain in rivals)]
-    assert _explains_enough(base, trials) == enough
+    assert explains_enough(base, trials) == enough
 
 
 @pytest.mark.parametrize(

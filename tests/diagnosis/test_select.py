@@ -273,3 +273,41 @@ def test_sets_are_improved_on_three_times_at_most(monkeypatch: pytest.MonkeyPatc
     script = Script(monkeypatch, ["a", "b"], sets)
     assert script.run().selected == ("g", "h")
     assert len(script.improved) == 2
+
+
+@pytest.mark.parametrize(
+    ("gain", "left_out", "explains", "repeated", "selected"),
+    [
+        (9.0, 2.0, True, False, ("a", "b")),
+        (9.0, -1.0, True, False, ()),  # left-out experiments speak against the first
+        (9.0, 2.0, False, False, ()),  # the first explains little
+        (9.0, 2.0, True, True, ()),  # repeats tell the noise: what is not established is not there
+    ],
+)
+def test_two_effects_are_established_together_where_neither_is_alone(
+    gain: float, left_out: float, explains: bool, repeated: bool, selected: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rounds = {
+        (): SimpleNamespace(accepted=None, trials=(trial("a", gain, left_out=left_out),), base=()),
+        ("a",): SimpleNamespace(accepted=trial("b", 50.0, "a"), base=("a",)),
+        ("a", "b"): SimpleNamespace(accepted=None, trials=(), base=("a", "b")),
+    }
+    Script(monkeypatch, [])
+    monkeypatch.setattr(select, "next_effect", lambda fitter, base, **_: rounds[base.added])
+    monkeypatch.setattr(select, "explains_enough", lambda *_: explains)
+    monkeypatch.setattr(Trial, "of", lambda effect, fitted, base: trial(effect, 60.0))
+    fitter: Any = SimpleNamespace(floor=SimpleNamespace(repeated=repeated))
+    shop: Any = SimpleNamespace(pool=None)
+    assert select_effects(fitter, model(), shop).selected == selected
+
+
+def test_a_promising_effect_alone_stays_unestablished(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no second one is established beside the first, the search ends as if that had not been tried."""
+    none = SimpleNamespace(accepted=None, trials=(trial("a", 9.0),), base=())
+    Script(monkeypatch, [])
+    monkeypatch.setattr(select, "next_effect", lambda fitter, base, **_: none)
+    monkeypatch.setattr(select, "explains_enough", lambda *_: True)
+    fitter: Any = SimpleNamespace(floor=SimpleNamespace(repeated=False))
+    shop: Any = SimpleNamespace(pool=None)
+    found = select_effects(fitter, model(), shop)
+    assert (found.selected, found.rounds) == ((), (none,))

@@ -130,13 +130,13 @@ def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, furt
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
     if near_floor and first.mean_square > (1 - MATTERS) * base.mean_square:
         return False
-    enough = fitter.floor.repeated or _explains_enough(base, trials)
+    enough = fitter.floor.repeated or explains_enough(base, trials)
     if not (enough or may_be_noise(fitter.case, first)):
         return False
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
 
 
-def _explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
+def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
     """Whether the first trial removes half of what the base leaves above the sensors' noise; a third where no other
     gains half as much. The error of a shape looks like one more effect, which removes less."""
     rest, left = base.mean_square - 1.0, trials[0].fitted.mean_square - 1.0

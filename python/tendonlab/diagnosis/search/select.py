@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from tendonlab.diagnosis.floor import renewed
-from tendonlab.diagnosis.search.contest import Round, next_effect
+from tendonlab.diagnosis.search.contest import Round, explains_enough, next_effect
 from tendonlab.diagnosis.search.rivals import (
     MAX_EFFECTS,
     Place,
@@ -15,11 +15,13 @@ from tendonlab.diagnosis.search.rivals import (
     improve,
     largest_gain,
 )
+from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
 MAX_IMPROVEMENTS = 3
+PAIR = Bar(evidence=2.0 * DETECT.evidence, left_out=2.0 * DETECT.left_out, doubted=False)  # of two effects at once
 
 
 @dataclass(frozen=True)
@@ -94,13 +96,38 @@ def _add_effects(state: _Extended, tuned: Fitted, shop: Workshop) -> _Extended:
     while len(steps) < MAX_EFFECTS:
         base = steps[-1] if steps else tuned
         contest = next_effect(fitter, base, largest_gain=largest_gain(places), shop=shop)
-        if contest is None or contest.accepted is None:
-            return _Extended(fitter, steps, places, (contest,) if contest else ())
+        if contest is None:
+            return _Extended(fitter, steps, places)
+        if contest.accepted is None:
+            deeper = _two_deep(_Extended(fitter, steps, places), base, contest, shop)
+            if deeper is None:
+                return _Extended(fitter, steps, places, (contest,))
+            fitter, steps, places = deeper.fitter, deeper.steps, deeper.places
+            continue
         place = Place(base, contest.accepted, contest)
         places = {**places, place.key: place}
         fitter, model = renewed(fitter, contest.accepted.fitted, shop.pool)
         steps = (*steps, model)
     return _Extended(fitter, steps, places)
+
+
+def _two_deep(state: _Extended, base: Fitted, contest: Round, shop: Workshop) -> _Extended | None:
+    """Without repeats: the effect that explains much, though too little to be established beside what a second one
+    leaves, with that second one, where the two together are. Each place is contested afterwards."""
+    if state.fitter.floor.repeated or len(base.added) + 2 > MAX_EFFECTS or not contest.trials:
+        return None
+    leader = contest.trials[0]
+    if not (leader.left_out_gain > 0.0 and explains_enough(base, contest.trials)):
+        return None
+    fitter, first = renewed(state.fitter, leader.fitted, shop.pool)
+    further = next_effect(fitter, first, largest_gain=largest_gain(state.places), shop=shop)
+    if further is None or further.accepted is None:
+        return None
+    if not PAIR.passed(Trial.of("", further.accepted.fitted, base)):
+        return None
+    place = Place(first, further.accepted, further)
+    fitter, model = renewed(fitter, further.accepted.fitted, shop.pool)
+    return _Extended(fitter, (*state.steps, first, model), {**state.places, place.key: place})
 
 
 def _models_before(fitter: Fitter, model: Fitted) -> list[Fitted]:
