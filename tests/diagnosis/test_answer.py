@@ -50,7 +50,7 @@ def test_the_gap_lists_floor_and_error_of_each_stage() -> None:
         "c": {"noise_floor": 2.0, "nominal": pytest.approx(4.0), "refitted": pytest.approx(2.0)},
     }
     search: Any = SimpleNamespace(path=[SimpleNamespace(added=()), SimpleNamespace(added=("x",))])
-    steps = _steps(CASE, search, [replayed(3.0, np.nan, 4.0), replayed(1.0, np.nan, 2.0)])
+    steps = _steps(CASE, search, [replayed(3.0, np.nan, 4.0), replayed(1.0, np.nan, 2.0)])["steps"]
     assert steps == [
         {"effects": [], "rms": {"a": pytest.approx(3.0), "c": pytest.approx(4.0)}},
         {"effects": ["x"], "rms": {"a": pytest.approx(1.0), "c": pytest.approx(2.0)}},

@@ -275,39 +275,38 @@ def test_sets_are_improved_on_three_times_at_most(monkeypatch: pytest.MonkeyPatc
     assert len(script.improved) == 2
 
 
+def leading(effect: str, *, left: float, left_out: float = 2.0) -> Trial:
+    """An effect of little evidence that leaves this mean square of 10."""
+    found = trial(effect, 9.0, left_out=left_out)
+    found.fitted.mean_square = left  # type: ignore[misc]
+    return found
+
+
 @pytest.mark.parametrize(
-    ("gain", "left_out", "explains", "repeated", "selected"),
+    ("trials", "explains", "repeated", "selected"),
     [
-        (9.0, 2.0, True, False, ("a", "b")),
-        (9.0, -1.0, True, False, ()),  # left-out experiments speak against the first
-        (9.0, 2.0, False, False, ()),  # the first explains little
-        (9.0, 2.0, True, True, ()),  # repeats tell the noise: what is not established is not there
+        ([leading("a", left=3.0)], True, False, ("a", "b")),
+        ([leading("c", left=8.0), leading("a", left=3.0)], True, False, ("a", "b")),  # who leaves least is tried first
+        ([leading("c", left=2.0), leading("d", left=2.01), leading("a", left=3.0)], True, False, ("a", "b")),
+        ([leading("c", left=1.0), leading("d", left=2.0), leading("a", left=3.0)], True, False, ()),  # two at the most
+        ([leading("a", left=3.0, left_out=-1.0)], True, False, ()),  # left-out blocks speak against it
+        ([leading("a", left=9.0)], True, False, ()),  # it explains little
+        ([leading("a", left=3.0)], False, False, ()),  # the two explain too little
+        ([leading("a", left=3.0)], True, True, ()),  # repeats tell the noise: what is not established is not there
     ],
 )
 def test_two_effects_are_established_together_where_neither_is_alone(
-    gain: float, left_out: float, explains: bool, repeated: bool, selected: Any, monkeypatch: pytest.MonkeyPatch
+    trials: Sequence[Trial], explains: bool, repeated: bool, selected: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    rounds = {
-        (): SimpleNamespace(accepted=None, trials=(trial("a", gain, left_out=left_out),), base=()),
-        ("a",): SimpleNamespace(accepted=trial("b", 50.0, "a"), base=("a",)),
-        ("a", "b"): SimpleNamespace(accepted=None, trials=(), base=("a", "b")),
-    }
+    nothing = SimpleNamespace(accepted=None, trials=(), base=())
+    rounds = {(): SimpleNamespace(accepted=None, trials=trials, base=())}
+    rounds["a",] = SimpleNamespace(accepted=trial("b", 50.0, "a"), base=("a",))
     Script(monkeypatch, [])
-    monkeypatch.setattr(select, "next_effect", lambda fitter, base, **_: rounds[base.added])
+    monkeypatch.setattr(select, "next_effect", lambda fitter, base, **_: rounds.get(base.added, nothing))
     monkeypatch.setattr(select, "explains_enough", lambda *_: explains)
     monkeypatch.setattr(Trial, "of", lambda effect, fitted, base: trial(effect, 60.0))
     fitter: Any = SimpleNamespace(floor=SimpleNamespace(repeated=repeated))
     shop: Any = SimpleNamespace(pool=None)
-    assert select_effects(fitter, model(), shop).selected == selected
-
-
-def test_a_promising_effect_alone_stays_unestablished(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where no second one is established beside the first, the search ends as if that had not been tried."""
-    none = SimpleNamespace(accepted=None, trials=(trial("a", 9.0),), base=())
-    Script(monkeypatch, [])
-    monkeypatch.setattr(select, "next_effect", lambda fitter, base, **_: none)
-    monkeypatch.setattr(select, "explains_enough", lambda *_: True)
-    fitter: Any = SimpleNamespace(floor=SimpleNamespace(repeated=False))
-    shop: Any = SimpleNamespace(pool=None)
     found = select_effects(fitter, model(), shop)
-    assert (found.selected, found.rounds) == ((), (none,))
+    assert found.selected == selected
+    assert len(found.rounds) == (3 if selected else 1)

@@ -1,4 +1,4 @@
-"""`tendonlab blind draw|run|score`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|score|calibrate`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|score")
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|score|calibrate")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -60,6 +60,25 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     scoring.add_argument("reports", type=Path, metavar="REPORTS")
     scoring.add_argument("--csv", type=Path, help="write one row per case here")
     scoring.add_argument("--json", type=Path, help="write summary and cases here")
+    _add_calibrate(verbs)
+
+
+def _add_calibrate(verbs: Any) -> None:
+    text = "fit the map from evidence to probability on diagnosed cases whose truth is open"
+    parser = _verb(verbs, "calibrate", _calibrate, text)
+    pair: dict[str, Any] = {"type": Path, "nargs": 2, "action": "append", "metavar": ("SEALED", "REPORTS")}
+    parser.add_argument("--on", required=True, help="cases to fit; may be given several times", **pair)
+    parser.add_argument("--test", default=[], help="other cases, which confirm the map or not", **pair)
+    parser.add_argument("--out", type=Path, required=True, help="file to write, calibration.json")
+
+
+def _calibrate(given: argparse.Namespace) -> int:
+    from .calibrating import calibrate
+
+    content = json.dumps(calibrate(given.on, given.test), indent=2)
+    given.out.write_text(content + "\n", encoding="utf-8")
+    print(content)
+    return 0
 
 
 def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:

@@ -10,6 +10,7 @@ import pandas as pd
 
 from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
+from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
@@ -42,7 +43,8 @@ def answer(
         floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     levels = _levels(search, nominal, stages, floor)
-    verdict = decide(search.rounds, search.selected, levels)
+    raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
+    verdict = calibration.applied(raw)
     records = where.PortRecords(case, stages["with_effect"], judged)
     held_out = _per_experiment(case, stages, floor, judged)
     rng = np.random.default_rng(seed)
@@ -52,6 +54,7 @@ def answer(
         seed=seed,
         verdict=verdict.verdict,
         verdict_probability=verdict.probability,
+        calibrated=case.system.kind in calibration.systems,
         replay=notes.replay(case),
         gap=_gap(case, stages, floor),
         where={
@@ -82,10 +85,8 @@ def answer(
         where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),
         held_out=held_out,
         table=inverse_dynamics(case, [model.system for model in search.path], judged),
-        split={
-            split: [case.experiments[i].name for i in of] for split, of in (("train", case.train), ("test", case.test))
-        },
-        details={**notes.details(case, floor, nominal, search), "steps": _steps(case, search, steps)},
+        split={name: [case.experiments[i].name for i in of] for name, of in _splits(case)},
+        details=notes.details(case, floor, nominal, search) | _steps(case, search, steps) | {"evidence": raw.evidence},
         seconds=seconds(),
     )
 
@@ -104,6 +105,10 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
     )
 
 
+def _splits(case: Case) -> list[tuple[str, Sequence[int]]]:
+    return [("train", case.train), ("test", case.test)]
+
+
 def _gap(case: Case, stages: dict[str, Replayed], floor: Floor) -> dict[str, dict[str, float]]:
     errors = {stage: heldout.rms(replayed) for stage, replayed in stages.items()}
     return {
@@ -112,12 +117,13 @@ def _gap(case: Case, stages: dict[str, Replayed], floor: Floor) -> dict[str, dic
     }
 
 
-def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> list[dict[str, Any]]:
-    """Held-out rms of every output after the refit and after each effect that was added."""
-    return [
+def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> dict[str, Any]:
+    """Held-out rms of every output after the refit and after each effect that was added, as `steps`."""
+    steps = [
         {"effects": list(model.added), "rms": {case.outputs[c]: float(heldout.rms(run)[c]) for c in case.measured}}
         for model, run in zip(search.path, replayed, strict=True)
     ]
+    return {"steps": steps}
 
 
 def _invisible(search: Search) -> tuple[str, ...]:

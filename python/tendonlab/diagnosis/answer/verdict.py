@@ -1,4 +1,4 @@
-"""From the search to a verdict and to probabilities: tempered evidence, not yet calibrated on blind cases."""
+"""From the search to a verdict and to probabilities: tempered evidence, which a calibration maps."""
 
 from __future__ import annotations
 
@@ -50,6 +50,11 @@ class Verdict:
     effects: dict[str, float]
     sets: list[dict[str, Any]]
     indistinguishable: list[list[str]]
+
+    @property
+    def evidence(self) -> dict[str, dict[str, float]]:
+        """What a calibration starts from: probabilities of verdicts and effects as they are."""
+        return {"verdict": self.probability, "effects": self.effects}
 
 
 def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> Verdict:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tendonlab.diagnosis.floor import renewed
@@ -21,6 +22,8 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
 MAX_IMPROVEMENTS = 3
+NUM_LEADERS = 2  # effects that are tried together with a second one where none is established
+LEADS, ALIKE = 0.2, 0.02  # share of the error that such an effect removes, and by which what two of them leave differs
 PAIR = Bar(evidence=2.0 * DETECT.evidence, left_out=2.0 * DETECT.left_out, doubted=False)  # of two effects at once
 
 
@@ -112,22 +115,34 @@ def _add_effects(state: _Extended, tuned: Fitted, shop: Workshop) -> _Extended:
 
 
 def _two_deep(state: _Extended, base: Fitted, contest: Round, shop: Workshop) -> _Extended | None:
-    """Without repeats: the effect that explains much, though too little to be established beside what a second one
-    leaves, with that second one, where the two together are. Each place is contested afterwards."""
-    if state.fitter.floor.repeated or len(base.added) + 2 > MAX_EFFECTS or not contest.trials:
+    """Without repeats: an effect that removes much, though what a second one leaves hides its evidence, with that
+    second one, where the two together are established. Each place is contested afterwards."""
+    if state.fitter.floor.repeated or len(base.added) + 2 > MAX_EFFECTS:
         return None
-    leader = contest.trials[0]
-    if not (leader.left_out_gain > 0.0 and explains_enough(base, contest.trials)):
-        return None
-    fitter, first = renewed(state.fitter, leader.fitted, shop.pool)
-    further = next_effect(fitter, first, largest_gain=largest_gain(state.places), shop=shop)
-    if further is None or further.accepted is None:
-        return None
-    if not PAIR.passed(Trial.of("", further.accepted.fitted, base)):
-        return None
-    place = Place(first, further.accepted, further)
-    fitter, model = renewed(fitter, further.accepted.fitted, shop.pool)
-    return _Extended(fitter, (*state.steps, first, model), {**state.places, place.key: place})
+    for leader in _leaders(base, contest.trials):
+        fitter, first = renewed(state.fitter, leader.fitted, shop.pool)
+        further = next_effect(fitter, first, largest_gain=largest_gain(state.places), shop=shop)
+        if further is None or further.accepted is None:
+            continue
+        pair = Trial.of(further.accepted.effect, further.accepted.fitted, base)
+        if PAIR.passed(pair) and explains_enough(base, [pair]):
+            place = Place(first, further.accepted, further)
+            fitter, model = renewed(fitter, further.accepted.fitted, shop.pool)
+            return _Extended(fitter, (*state.steps, first, model), {**state.places, place.key: place})
+    return None
+
+
+def _leaders(base: Fitted, trials: Sequence[Trial]) -> list[Trial]:
+    """The effects that leave least, of those that remove a part of the error and foretell left-out blocks better; one
+    of those that leave the same."""
+    most = base.mean_square - LEADS * (base.mean_square - 1.0)
+    able = sorted((t for t in trials if t.left_out_gain > 0.0), key=lambda t: t.fitted.mean_square)
+    leaders: list[Trial] = []
+    for trial in able:
+        left = trial.fitted.mean_square
+        if left < most and not any(abs(left - other.fitted.mean_square) < ALIKE * left for other in leaders):
+            leaders.append(trial)
+    return leaders[:NUM_LEADERS]
 
 
 def _models_before(fitter: Fitter, model: Fitted) -> list[Fitted]:

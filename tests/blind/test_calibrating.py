@@ -1,0 +1,91 @@
+"""The map from evidence to probability: fitted on cases whose evidence is too sure, it finds by how much."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tendonlab.blind.calibrating import Judged, calibrate, fitted, results_on
+from tendonlab.blind.reliability import calibration_error, error_beyond_chance, reliability_line, too_far_off
+from tendonlab.diagnosis.answer.calibration import Calibration
+
+VERDICTS = ("data_fault", "no_gap", "parameters_only", "effect", "unknown_effect")
+
+
+def cases(count: int, *, sharpness: float, lapse: float = 0.0) -> list[Judged]:
+    """Cases whose log odds are `sharpness` times as large as they should be; a share of them has any verdict at all."""
+    draw = np.random.default_rng(5)
+    made = []
+    for _ in range(count):
+        true = np.concatenate([[0.0], draw.dirichlet([0.4] * 4)])
+        came = str(draw.choice(VERDICTS[1:]) if draw.random() < lapse else draw.choice(VERDICTS, p=true))
+        sharp = np.where(true > 0, np.maximum(true, 1e-9) ** sharpness, 0.0)
+        evidence = dict(zip(VERDICTS, (sharp / sharp.sum()).tolist(), strict=True))
+        chance = draw.random()
+        there = frozenset(["a:b"]) if draw.random() < chance else frozenset[str]()
+        odds = sharpness * np.log(chance / (1.0 - chance))
+        effects = {"a:b": float(1.0 / (1.0 + np.exp(-odds)))}
+        told = max(evidence, key=evidence.__getitem__)
+        made.append(Judged("rigid_joint", False, came, there, evidence, effects, told))
+    return made
+
+
+@pytest.mark.parametrize("sharpness", [0.5, 1.0, 3.0])
+def test_the_map_undoes_evidence_that_is_too_sure_or_not_sure_enough(sharpness: float) -> None:
+    found = fitted(cases(1500, sharpness=sharpness))
+    assert found.temperature == pytest.approx(sharpness, rel=0.15)
+    assert found.slope == pytest.approx(1.0 / sharpness, rel=0.15)
+    assert found.shift == pytest.approx(0.0, abs=0.15)
+    assert found.lapse < 0.05
+
+
+def test_probabilities_are_true_under_the_fitted_map_on_other_cases() -> None:
+    drawn = cases(2400, sharpness=3.0)
+    before, after = results_on(drawn[1200:], Calibration()), results_on(drawn[1200:], fitted(drawn[:1200]))
+    assert abs(before["z"]) > 5.0
+    assert abs(after["z"]) < 2.5
+    assert before["calibration error beyond chance"] > 0.05
+    assert after["calibration error beyond chance"] < 0.02
+    assert before["reliability slope"] < 0.5
+    assert after["reliability slope"] == pytest.approx(1.0, abs=0.2)
+
+
+def test_a_share_of_cases_that_nothing_foretells_is_a_lapse() -> None:
+    found = fitted(cases(3000, sharpness=1.0, lapse=0.2))
+    assert found.lapse == pytest.approx(0.2, abs=0.06)
+
+
+def test_the_most_probable_verdict_and_the_order_of_effects_stay() -> None:
+    of = Calibration(temperature=4.0, lapse=0.3, slope=0.3, shift=-0.5)
+    raw = {"data_fault": 0.0, "no_gap": 1e-20, "parameters_only": 0.3, "effect": 0.4, "unknown_effect": 0.3}
+    mapped = of.verdicts(raw)
+    assert sum(mapped.values()) == pytest.approx(1.0)
+    assert max(mapped, key=mapped.__getitem__) == "effect"
+    assert mapped["data_fault"] == 0.0
+    effects = [of.effect(p) for p in (0.0, 0.1, 0.5, 0.9, 1.0)]
+    assert effects == sorted(effects)
+
+
+def test_no_map_changes_nothing() -> None:
+    raw = dict.fromkeys(VERDICTS, 0.2)
+    assert Calibration().verdicts(raw) == pytest.approx(raw)
+    assert Calibration().effect(0.37) == pytest.approx(0.37)
+
+
+def test_true_probabilities_pass_and_false_ones_do_not() -> None:
+    draw = np.random.default_rng(1)
+    probability = draw.uniform(0.5, 1.0, 800)
+    true = (draw.random(800) < probability).astype(float)
+    false = (draw.random(800) < 0.5 * probability).astype(float)
+    assert abs(too_far_off(probability, true)) < 2.0 < 5.0 < abs(too_far_off(probability, false))
+    assert error_beyond_chance(probability, true) < 0.02 < error_beyond_chance(probability, false)
+    assert reliability_line(probability, true)[0] == pytest.approx(1.0, abs=0.25)
+    assert calibration_error(np.array([0.25, 0.25, 0.25, 0.25]), np.array([1.0, 0.0, 0.0, 0.0])) == 0.0
+
+
+def test_a_missing_report_is_named(tmp_path: Path) -> None:
+    (tmp_path / "case-001.toml").write_text("", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"case-001/report.json is missing: expected a report of every case"):
+        calibrate([(tmp_path, tmp_path)])
