@@ -3,26 +3,31 @@
 #include "tendonlab/core/lanes.hpp"
 
 namespace tendonlab {
-/// The value is broadcast over its vector: a product then needs no shuffle. As many derivatives as a register holds:
-/// wider vectors of the language cost more than a second simulation.
+/// The value is broadcast over its vector: a product then needs no shuffle. Eight derivatives share the work for the
+/// value, the step control and the events. Vectors of the language that are wider than a register would be slow.
 struct Gradient {
-  static constexpr int width = word_size;  ///< number of directions
-  Word value, d;
-  Gradient() : value{}, d{} {}
-  Gradient(double a) : value(Word{} + a), d{} {}
-  Gradient(const Word& of, const Word& slopes) : value(of), d(slopes) {}
+  static constexpr int width = Lanes::count;  ///< number of directions
+  Word value;
+  Lanes d;
+  Gradient() : value{} {}
+  Gradient(double a) : value(Word{} + a) {}
+  Gradient(const Word& of, const Lanes& slopes) : value(of), d(slopes) {}
   /// Calls f(derivative) for the first `count` of them.
   template <class F>
   void each_derivative(int count, F&& f) const {
     for (int i = 0; i < count; ++i) f(d[i]);
   }
-  void seed(int i, double slope) { d[i] = slope; }
+  void seed(int i, double slope) { d.set(i, slope); }
 };
 template <>
 struct PlainOf<Gradient> {
   using type = double;
 };
 
+/// Slopes times a number that is broadcast.
+TENDONLAB_INLINE Lanes operator*(const Word& a, const Lanes& b) {
+  return by_words<Lanes>([&](int i) TENDONLAB_ALWAYS { return a * b.word[i]; });
+}
 TENDONLAB_INLINE Gradient operator+(const Gradient& a, const Gradient& b) {
   return {a.value + b.value, a.d + b.d};
 }

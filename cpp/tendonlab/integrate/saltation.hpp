@@ -37,7 +37,7 @@ class Jump {
   }
 
  private:
-  void shift(T& x, double jump) const { x.d += (jump * moves).d; }
+  void shift(T& x, double jump) const { x.d = x.d + (jump * moves).d; }
   /// dt/dp = -g_p / g_t of the guard g whose root the event is; its value is of no interest.
   template <class Simulation>
   T of_guard(const Simulation& s, int mode, double toward) const {
