@@ -1,9 +1,13 @@
 """The error falls in proportion to the tolerance, over decades; what is off changes nothing, bit for bit."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from integrate.rig import FRICTION, NOMINAL, controller, joint, pair, relative, run
+from tendonlab import _core
+from tendonlab.simulation.prepare import Replay, prepare
+from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.signals import smooth
 
 T = np.linspace(0.0, 2.0, 401)
@@ -58,6 +62,19 @@ def test_few_attempts_are_rejected():
     for system, command, loop in CASES.values():
         done = run(system, T, command, loop=loop, tolerance=1e-6)
         assert done.rejected < 0.3 * done.attempts + 20
+
+
+def test_few_attempts_are_rejected_where_noise_bends_a_smooth_input():
+    """The curvature of parabolas with given means jumps at every sample: steps end there rather than fail beyond."""
+    time = np.linspace(0.0, 10.0, 1001)
+    noisy = 0.5 * np.sin(np.pi * time) + 0.2 * np.random.default_rng(0).standard_normal(len(time))
+    data = pd.DataFrame({"motor_torque": noisy, "joint_angle": 0.0}, index=pd.Index(time, name="t"))
+    system = joint(("joint:viscous",), viscous=0.02)
+    ready = prepare(Experiment(name="noisy", data=data, averaged=True), system, Replay("free"))
+    settings = _core.Settings(tolerance=1e-4, position_scale=1e-2, velocity_scale=1e-2)
+    done = _core.simulate(system.kind, system.values(), system.active(), ready.core, [], settings)
+    assert done["rejected"] < 0.15 * done["attempts"]
+    assert done["attempts"] < 1.5 * len(time)
 
 
 AMPLITUDES = {

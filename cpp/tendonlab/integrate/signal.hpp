@@ -17,6 +17,7 @@ struct Signal {
   std::vector<double> before;                       ///< integral up to each knot
   double pieces_per_second = 0;                     ///< 0: pieces differ in length
   bool holds = false;                               ///< pieces are constant: the stepper lands on their borders
+  bool bends = false;                               ///< no value jumps, but the slope does from piece to piece
 
   bool empty() const { return knots.empty(); }
   int pieces() const { return static_cast<int>(knots.size()); }
@@ -80,6 +81,7 @@ struct Signal {
   void prepare() {
     join();
     find_rate();
+    find_bends();
     gather();
   }
   /// When a held value next changes after piece `i`; infinity if it never does.
@@ -154,6 +156,18 @@ struct Signal {
     for (std::size_t i = 1; i < knots.size(); ++i)
       if (std::fabs(knots[i] - knots[i - 1] - length) > 1e-3 * length) return;
     pieces_per_second = 1.0 / length;
+  }
+  void find_bends() {
+    const auto is_straight = [](const auto& c) { return c[2] == 0.0 && c[3] == 0.0; };
+    bends = !holds && !empty() && std::all_of(coefficients.begin(), coefficients.end(), is_straight);
+    double steepest = 0, jump = 0;
+    for (std::size_t i = 1; i < knots.size() && !holds; ++i) {
+      const auto& c = coefficients[i - 1];
+      const double x = knots[i] - knots[i - 1], slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
+      steepest = std::max(steepest, std::fabs(slope));
+      jump = std::max(jump, std::fabs(coefficients[i][1] - slope));
+    }
+    bends = bends || jump > 1e-6 * steepest;
   }
   template <class F>
   static TENDONLAB_INLINE Lanes in_each(const PieceOf<Lanes>& piece, F f) {

@@ -49,6 +49,7 @@ class Simulation {
   struct Attempt {
     double length = 0;
     bool lands = false;       ///< ends on a jump of the inputs or on the last sample
+    bool pauses = false;      ///< ends on a knot of a smooth input
     bool explicitly = false;  ///< may be an explicit step: h reaches beyond what the inputs allow
   };
   void begin() {
@@ -89,7 +90,10 @@ class Simulation {
     // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
     if (plain_frame.holds) next.length = std::min(next.length, drive.next_knot(t + resolved()) - t);
     next.lands = next.length > (retakes ? reach : 0.95 * reach);
-    if (next.lands) next.length = reach;
+    if (next.lands)
+      next.length = reach;
+    else if (pausing > 0 && !retakes)
+      next.pauses = pause_at_knot(next.length);
     next.explicitly = next.length < h && next.length <= explicit_reach;
     return next;
   }
@@ -100,7 +104,8 @@ class Simulation {
     if (!tried.explicitly) explicit_reach *= RETRY;
     if (!(wish > 0)) {  // rejected
       ++trajectory.rejected;
-      const double shorter = length * std::max(0.15, -wish);
+      const double shorter = length * std::max(0.15, -wish), knot = drive.next_knot(t + resolved()) - t;
+      if (length > knot && shorter < knot && !drive.bends()) pausing = PAUSES;
       if (tried.explicitly)
         explicit_reach = shorter;
       else
@@ -118,7 +123,8 @@ class Simulation {
     y = first.mode >= 0 ? step.at(first.share) : step.to;
     t = first.mode < 0 && tried.lands ? std::min(kink, end) : t + taken;
     y.at.time = T(t);
-    h = tried.lands || tried.explicitly ? std::max(h, length * wish) : length * wish;
+    if (pausing > 0) --pausing;
+    h = tried.lands || tried.pauses || tried.explicitly ? std::max(h, length * wish) : length * wish;
     if (first.mode >= 0) {
       ++trajectory.events;
       pass_event(first);
@@ -140,10 +146,18 @@ class Simulation {
   };
   static constexpr double on_guard = 1e-13;
   static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
+  static constexpr int PAUSES = 16;      ///< steps that end on knots after one that passed a knot has failed
 
   /// The shortest time that counts.
   double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
 
+  /// Within a piece of a smooth input a step is far more exact than one that passes a knot.
+  bool pause_at_knot(double& length) const {
+    const double knot = drive.next_knot(t + resolved()) - t;
+    const bool pauses = length > 0.95 * knot;
+    if (pauses) length = knot;
+    return pauses;
+  }
   /// The step ends beyond an event: the next attempt is to end on the event.
   void aim(const Crossing& first, double length, Trajectory& trajectory) {
     ++trajectory.rejected;
@@ -338,6 +352,7 @@ class Simulation {
   Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
   double explicit_reach = Signal::inf_time;  ///< longest step that an explicit method takes as exactly
+  int pausing = 0;                           ///< steps that still end on knots
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?
   double memory_level[slots<System>] = {};
