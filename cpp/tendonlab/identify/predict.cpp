@@ -1,6 +1,7 @@
 #include "tendonlab/identify/predict.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "tendonlab/core/error.hpp"
 
@@ -174,13 +175,28 @@ Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bo
   return out;
 }
 
+const Linearised& Remembered::make(Point& point, const Eigen::VectorXd& x, const Eigen::VectorXd& z,
+                                   bool with_derivatives) {
+  point.known = false;
+  point.there = prediction.at(x, z, with_derivatives);
+  point.x = x, point.z = z, point.known = true;
+  return point.there;
+}
+
 const Linearised& Remembered::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) {
-  if (sloped.is(x, z)) return sloped.there;
-  if (!with_derivatives && plain.is(x, z)) return plain.there;
-  Point& to = with_derivatives ? sloped : plain;
-  to.known = false;
-  to.there = prediction.at(x, z, with_derivatives);
-  to.x = x, to.z = z, to.known = true;
-  return to.there;
+  if (with_derivatives) {
+    if (ahead.is(x, z)) std::swap(ahead, sloped);
+    accepts = true;
+    return sloped.is(x, z) ? sloped.there : make(sloped, x, z, true);
+  }
+  for (const Point* point : {&sloped, &ahead, &plain})
+    if (point->is(x, z)) return point->there;
+  if (std::exchange(accepts, false) && prediction.takes_one_simulation()) {
+    try {
+      return make(ahead, x, z, true);
+    } catch (const NumericalError&) {  // the residuals may have a value where their derivatives explode
+    }
+  }
+  return make(plain, x, z, false);
 }
 }  // namespace tendonlab::identify

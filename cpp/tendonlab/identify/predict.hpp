@@ -13,6 +13,8 @@ class Prediction {
   /// At the coordinates x of the free parameters and z of the task's own unknowns. Throws NumericalError,
   /// ParameterError.
   Linearised at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) const;
+  /// Does one simulation give all derivatives?
+  bool takes_one_simulation() const { return seeds.size() <= integrate::seeds_at_once; }
   std::vector<double> states(const Eigen::VectorXd& z) const;
   Eigen::VectorXd coordinates(const std::vector<double>& states) const;
 
@@ -36,7 +38,8 @@ class Prediction {
 };
 
 /// A prediction that remembers the points where it was last made, with derivatives and without: a solver asks for the
-/// same point several times.
+/// same point several times. It mostly accepts the first point that it tries, and then asks for the derivatives there:
+/// where one simulation gives them, they are computed at once. The value alone would take half as long.
 class Remembered {
  public:
   Remembered(const Problem& problem, std::size_t task) : prediction(problem, task) {}
@@ -51,7 +54,10 @@ class Remembered {
     bool known = false;
     bool is(const Eigen::VectorXd& at_x, const Eigen::VectorXd& at_z) const { return known && x == at_x && z == at_z; }
   };
+  const Linearised& make(Point& point, const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives);
+
   Prediction prediction;
-  Point plain, sloped;
+  Point plain, sloped, ahead;  ///< ahead: with derivatives, which nobody has asked for yet
+  bool accepts = false;        ///< was the last point that was tried accepted?
 };
 }  // namespace tendonlab::identify

@@ -39,6 +39,7 @@ struct Seed {
   enum class Of { parameter, position, velocity } of = Of::parameter;
   int index = 0;
 };
+inline constexpr std::size_t seeds_at_once = 8;  ///< that one simulation carries along; more take further ones
 
 struct Settings {
   double tolerance = 1e-6;

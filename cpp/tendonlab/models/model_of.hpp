@@ -36,8 +36,9 @@ class ModelOf final : public Model {
     out.gradient.assign(cells * seeds.size(), 0.0);
     if (settings.ports) out.port.assign(Of<double>::ports.size() * 4 * experiment.time.size(), 0.0);
     if (seeds.empty()) systems::run<Of, double>({{description, with, seeds, 0, 0}, experiment, settings, out});
-    for (std::size_t first = 0; first < seeds.size(); first += Gradient::width) {
-      const auto count = std::min<std::size_t>(seeds.size() - first, Gradient::width);
+    static_assert(integrate::seeds_at_once == Gradient::width);
+    for (std::size_t first = 0; first < seeds.size(); first += integrate::seeds_at_once) {
+      const auto count = std::min(seeds.size() - first, integrate::seeds_at_once);
       systems::run<Of, Gradient>({{description, with, seeds, first, count}, experiment, settings, out});
     }
     return out;
