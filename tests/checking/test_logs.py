@@ -48,14 +48,14 @@ def test_a_clock_that_runs_ten_times_too_far_makes_rates_ten_times_too_small(log
 def test_an_output_is_taken_earlier_in_one_experiment_alone(logs: Logs) -> None:
     """The value at t + by, by a spline; past the end of the record its last value."""
     by = np.array([0.0, 0.037])
-    moved = logs.earlier("q", by).moving["q"]
+    moved = logs.earlier({"q": by}).moving["q"]
     np.testing.assert_array_equal(moved[:, :300], logs.moving["q"][:, :300])
     np.testing.assert_allclose(moved[:, 300:590], sines(CLOCK + 0.037)[:, :290], atol=2e-5)  # spline of 10 ms steps
     np.testing.assert_allclose(moved[:, -1], logs.moving["q"][:, -1])
     np.testing.assert_allclose(
-        logs.earlier("f", by).others["f"][0, 300:590], np.sin(3 * (CLOCK + 0.037))[:290], atol=1e-6
+        logs.earlier({"f": by}).others["f"][0, 300:590], np.sin(3 * (CLOCK + 0.037))[:290], atol=1e-6
     )
-    early = logs.earlier("p", np.array([-0.05, 0.0])).moving["p"]
+    early = logs.earlier({"p": np.array([-0.05, 0.0])}).moving["p"]
     np.testing.assert_allclose(early[:, 5:300], 2.0 * sines(CLOCK - 0.05)[:, 5:], atol=2e-5)
 
 
@@ -143,6 +143,6 @@ def test_a_gap_is_marked_from_its_first_to_its_last_sample(tmp_path: Path) -> No
     kept = np.delete(np.arange(500), np.arange(200, 210))
     angle = np.sin(5 * time)
     rig = replace(logs, runs={"a": (time[kept], angle[kept], angle[kept])}).write(tmp_path)
-    whole = _Record.of(rig, rig.system().info, rig["a"], 1 / 250).whole
+    whole = _Record.of(rig.system().info, rig["a"], 1 / 250, {}).whole
     assert len(whole) == 500
     assert np.flatnonzero(~whole).tolist() == list(range(199, 211))

@@ -13,6 +13,7 @@ from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import EXPLAINED, wrong_factors
+from tendonlab.checking.spikes import marks
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.simulation.system import System, require_system
 
@@ -31,10 +32,11 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     Nothing is simulated: it takes seconds. How it works: docs/method.md."""
     require_dataset(dataset)
     system = dataset.system() if system is None else require_system(system)
-    found, notes = [*copy_findings(dataset), *sample_findings(dataset)], []
+    marked = {} if system.info.steady else marks(dataset)
+    found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
     if system.info.dof == 0:
         notes.append(UNSAMPLED.format(kind=system.kind))
-    elif (logs := read_logs(dataset, system.info)) is None:
+    elif (logs := read_logs(dataset, system.info, marked)) is None:
         notes.append(UNMOVED)
     else:
         more, notes = _by_the_equation(Equation(dataset, system), logs)

@@ -43,9 +43,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
     share = np.full(len(equation.predicted), ROUGH_SHARE)
     sd = np.full(late.shape, np.inf)
     for _ in range(ROUNDS):
-        moved = logs
-        for name, by in zip(channels, late, strict=True):
-            moved = moved.earlier(name, by)
+        moved = logs.earlier(dict(zip(channels, late, strict=True)))
         at = terms(equation, moved.at(kept))
         fit = at.fit(share)
         if not np.isfinite(fit.cost):

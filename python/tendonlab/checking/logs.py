@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tendonlab.checking import smoothing
-from tendonlab.checking.spikes import outliers, spikes
+from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.catalog import SystemInfo
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 CLEAR = 3.0  # sd of its noise that a velocity must exceed for its direction to be known
 GAP = 3.0  # median steps between two samples that make a gap
@@ -43,13 +48,28 @@ class Logs:
             return replace(self, moving=moving, driving=driving)
         return self._each(lambda name, rows: rows / factor if name in signals else rows)
 
-    def earlier(self, signal: str, by: np.ndarray) -> Logs:
-        """The logs with an output moved by `by`, s, one number per experiment, towards the past."""
-        changed = np.array((self.moving | self.others)[signal])
-        for i in np.flatnonzero(by):
+    def earlier(self, by: Mapping[str, np.ndarray]) -> Logs:
+        """The logs with outputs moved by so much, s, one number per experiment, towards the past."""
+        changed = {name: np.array((self.moving | self.others)[name]) for name in by}
+        for name, each in by.items():
+            for i in np.flatnonzero(each):
+                own = self.run == i
+                time = self.time[own]
+                at = np.clip(time + float(each[i]), time[0], time[-1])
+                changed[name][:, own] = self._paths[name, int(i)](at)
+        return self._each(lambda name, rows: changed.get(name, rows))
+
+    @cached_property
+    def _paths(self) -> dict[tuple[str, int], CubicSpline]:
+        """What runs through the samples of each output in each experiment."""
+        from scipy.interpolate import CubicSpline
+
+        paths = {}
+        for i in np.unique(self.run):
             own = self.run == i
-            changed[:, own] = _moved(self.time[own], changed[:, own], float(by[i]))
-        return self._each(lambda name, rows: changed if name == signal else rows)
+            for name, rows in (self.moving | self.others).items():
+                paths[name, int(i)] = CubicSpline(self.time[own], rows[:, own], axis=1)
+        return paths
 
     def rolled(self, signals: Sequence[str], steps: int) -> Logs:
         """The logs with axes moved by whole steps towards the past; what passes an end comes from next to it."""
@@ -83,15 +103,17 @@ class Logs:
         return replace(self, moving=moving, driving=driving, others=others)
 
 
-def read_logs(dataset: Dataset, info: SystemInfo) -> Logs | None:
-    """The logs on a common grid; None where no axis was measured or nothing moves."""
+def read_logs(dataset: Dataset, info: SystemInfo, marked: Marks | None = None) -> Logs | None:
+    """The logs on a common grid; None where no axis was measured or nothing moves. `marked`: their outliers where these
+    are known already."""
     axes = [s.name for s in info.outputs if s.axis is not None and s.name in dataset.signals]
     if not axes or min(len(e.data) for e in dataset.experiments) < 8 * smoothing.BLOCK:
         return None
     step = float(np.median(np.concatenate([np.diff(e.time) for e in dataset.experiments])))
-    records = [_Record.of(dataset, info, e, step) for e in dataset.experiments]
+    marked = marks(dataset) if marked is None else marked
+    records = [_Record.of(info, e, step, marked) for e in dataset.experiments]
     positions = [r.values[name] for r in records for name in axes]
-    noise = [smoothing.noise_of(_despiked(e, name)) for e in dataset.experiments for name in axes]
+    noise = [smoothing.noise_of(_despiked(e, name, marked)) for e in dataset.experiments for name in axes]
     if not any(np.ptp(y) > 10 * s for y, s in zip(positions, noise, strict=True)):
         return None
     total = sum(len(r.values[axes[0]]) for r in records)
@@ -108,12 +130,12 @@ class _Record:
     whole: np.ndarray
 
     @classmethod
-    def of(cls, dataset: Dataset, info: SystemInfo, experiment: Experiment, step: float) -> _Record:
+    def of(cls, info: SystemInfo, experiment: Experiment, step: float, marked: Marks) -> _Record:
         held = {s.name: experiment.holds.get(s.name, s.between == "hold") for s in info.inputs}
         known = {s.name for s in info.signals}
         names = [name for name in experiment.data.columns if name in known]
         time = experiment.time
-        clean = {name: _despiked(experiment, name, driven=name in held) for name in names}
+        clean = {name: _despiked(experiment, name, marked) for name in names}
         values = {n: smoothing.even(time, y, step, held=held.get(n, False)) for n, y in clean.items()}
         whole = np.ones(len(next(iter(values.values()))), dtype=bool)
         for k in np.flatnonzero(np.diff(time) > GAP * step):
@@ -153,9 +175,9 @@ def _slides(rows: np.ndarray, noise: float, sd: float, step: float) -> np.ndarra
     return np.asarray((speed > CLEAR * noise * smoothing.spread(sd, 1) / step) & (speed > np.abs(rows[2]) * sd * step))
 
 
-def _despiked(experiment: Experiment, name: str, *, driven: bool = False) -> np.ndarray:
+def _despiked(experiment: Experiment, name: str, marked: Marks) -> np.ndarray:
     values = experiment.data[name].to_numpy(dtype=float)
-    return np.where(spikes(values) if driven else outliers(values), np.nan, values)
+    return np.where(marked.get((experiment.name, name), False), np.nan, values)
 
 
 def _joined(parts: Sequence[Logs], step: float) -> Logs:
@@ -166,10 +188,3 @@ def _joined(parts: Sequence[Logs], step: float) -> Logs:
     time, clear = np.concatenate([p.time for p in parts]), np.concatenate([p.clear for p in parts])
     moving, driving, others = (join([getattr(p, kind) for p in parts]) for kind in ("moving", "driving", "others"))
     return Logs(moving, driving, others, run, time, step, clear)
-
-
-def _moved(time: np.ndarray, rows: np.ndarray, by: float) -> np.ndarray:
-    from scipy.interpolate import CubicSpline
-
-    at = np.clip(time + by, time[0], time[-1])
-    return np.asarray(CubicSpline(time, rows, axis=1)(at))

@@ -8,7 +8,7 @@ import numpy as np
 
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.smoothing import repeats, smallest_change
-from tendonlab.checking.spikes import outliers, spikes
+from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.report.numbers import number
 from tendonlab.simulation.signals import white_noise_sd
@@ -21,12 +21,14 @@ COARSE = 4.0  # times its noise that a step of a reading must be to matter
 FINE = 1000.0  # steps within the travel: finer readings need no word
 
 
-def sample_findings(dataset: Dataset) -> list[Finding]:
-    """Findings about single channels, for every experiment."""
+def sample_findings(dataset: Dataset, marked: Marks | None = None) -> list[Finding]:
+    """Findings about single channels, for every experiment. `marked`: their outliers where these are known already."""
     steady = dataset.system().info.steady
+    if marked is None:
+        marked = {} if steady else marks(dataset)
     found: list[Finding] = []
     for experiment in dataset.experiments:
-        found += [] if steady else [*_stamps(experiment), *_spikes(dataset, experiment)]
+        found += [] if steady else [*_stamps(experiment), *_spikes(dataset, experiment, marked)]
         found += _standing(dataset, experiment)
         found += [] if steady else _limits(dataset, experiment)
     return [*found, *([] if steady else [*_jitter(dataset), *_steps(dataset)])]
@@ -66,15 +68,14 @@ def _stamps(experiment: Experiment) -> Iterator[Finding]:
         yield _note("sampling", text, experiment)
 
 
-def _spikes(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
+def _spikes(dataset: Dataset, experiment: Experiment, marked: Marks) -> Iterator[Finding]:
     for name in experiment.data.columns:
-        if dataset.signals[name].role not in ("input", "output"):
+        if (experiment.name, name) not in marked:
             continue
-        find = spikes if dataset.signals[name].role == "input" else outliers
-        count = int(find(experiment.data[name].to_numpy(dtype=float)).sum())
+        count = int(marked[experiment.name, name].sum())
         if count:
             share = f"{_counted(count, 'sample')} of {name} ({number(100 * count / len(experiment.data), 2)} %)"
-            done = "interpolated values" if find is spikes else "these left out"
+            done = "interpolated values" if dataset.signals[name].role == "input" else "these left out"
             text = f"{share} far from the samples around; a diagnosis goes on with {done}"
             yield _note("outliers", text, experiment, name, count)
 

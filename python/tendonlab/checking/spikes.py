@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,19 @@ CORNER = 2.0  # times by how much the steps before and after a sample differ, wi
 # Neighbours that tell the path, pass by pass: two outliers in a row, or with one sample between, hide one another.
 NEAR = ((1, 2), (2, 3), (1, 3), (1, 2))
 MOST = 0.03  # of a record: what is more frequent belongs to the signal
+
+
+Marks = Mapping[tuple[str, str], np.ndarray]  # which samples are outliers, by experiment and signal
+
+
+def marks(dataset: Dataset) -> Marks:
+    """The outliers of every input and output."""
+    return {
+        (e.name, name): (spikes if role == "input" else outliers)(e.data[name].to_numpy(dtype=float))
+        for e in dataset.experiments
+        for name in e.data.columns
+        if (role := dataset.signals[name].role) in ("input", "output")
+    }
 
 
 def outliers(values: np.ndarray) -> np.ndarray:
