@@ -103,6 +103,17 @@ def test_a_model_that_leaves_twice_the_residual_has_twice_the_level(nominal: Fit
     assert doubled.mean_square == pytest.approx(4.0 * nominal.mean_square)
 
 
+def test_a_fit_under_other_noise_is_the_one_that_is_simulated_there(fitter: Fitter, nominal: Fitted) -> None:
+    levels = nominal.levels * np.array([2.0, 3.0, 0.5])
+    there = replace(fitter, floor=replace(fitter.floor, sd=levels.tolist()))
+    again = there.fit(nominal.system, initial=nominal.initial, solve=False)
+    moved = nominal.under(levels)
+    assert moved.cost == pytest.approx(again.cost)
+    assert moved.evidence == pytest.approx(again.evidence)
+    for a, b in zip(moved.runs, again.runs, strict=True):
+        np.testing.assert_allclose(a.jacobian, b.jacobian, rtol=1e-6, atol=1e-6 * np.abs(b.jacobian).max())
+
+
 @pytest.mark.cpu(20)
 def test_a_settled_fit_leaves_the_noise_that_it_assumes(fitter: Fitter, nominal: Fitted) -> None:
     unrepeated = replace(fitter, floor=replace(fitter.floor, sd=nominal.own_levels.tolist()))

@@ -50,6 +50,16 @@ class Run:
     output: np.ndarray
     block: np.ndarray
 
+    def scaled(self, scale: np.ndarray) -> Run:
+        """The same with the rows of each output times its `scale`."""
+        rows = scale[self.output]
+        return replace(
+            self,
+            residual=rows * self.residual,
+            jacobian=rows[:, None] * self.jacobian,
+            by_own=rows[:, None] * self.by_own,
+        )
+
     def parts(self) -> list[np.ndarray]:
         """Rows of each block of 2 s, as masks."""
         return [self.block == b for b in range(int(self.block.max()) + 1)]
@@ -106,6 +116,13 @@ class Fitted:
         """The same fit whose rows count as these `shares` of independent ones, without them as all."""
         shares = np.ones_like(self.levels) if shares is None else shares
         return self if np.array_equal(shares, self.shares) else replace(self, shares=shares)
+
+    def under(self, levels: np.ndarray) -> Fitted:
+        """The same fit under noise of these levels."""
+        scale = self.levels / np.where(levels > 0, levels, 1.0)
+        runs = tuple(run.scaled(scale) for run in self.runs)
+        cost = self.prior_cost + 0.5 * sum(float(run.residual @ run.residual) for run in runs)
+        return replace(self, runs=runs, levels=levels, cost=cost)
 
     @cached_property
     def marginals(self) -> tuple[Marginal, ...]:

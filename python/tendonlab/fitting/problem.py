@@ -200,8 +200,7 @@ class Fitter:
         """Without repeats: the fit as it is, under the noise that it leaves itself."""
         if self.floor.repeated:
             return fit
-        own = replace(self.floor, sd=fit.own_levels.tolist())
-        there = replace(self, floor=own).fit(fit.system, added=fit.added, initial=fit.initial, solve=False)
+        there = fit.under(fit.own_levels)
         return there.counted(there.own_shares)
 
     def left_by(self, model: Fitted) -> Fitter:
