@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -100,7 +101,7 @@ class Case:
         """Values and flags for the core in experiment i, with its `own` unknowns (default: their means): its conditions
         hold there, its payload is added."""
         values = system.values()
-        fixed, added = self._conditions(i)
+        fixed, added = self._conditions[i]
         for k, known in fixed.items():
             values[k] = known
         for k, more in added.items():
@@ -137,7 +138,7 @@ class Case:
         """Experiment i for the compiled fit of `system`, whose own parameters differ from run to run. `tightness`: by
         which the sd of the experiment's own unknowns is multiplied."""
         ready = self.prepared[i]
-        fixed, added = self._conditions(i)
+        fixed, added = self._conditions[i]
         names = [p.name for p in system.info.parameters]
         scatter = [([k for k in group if names[k] in system.parameters], tightness * sd) for group, sd in self.scatter]
         initial, sd = list(ready.initial), [tightness * sd for sd in ready.initial_sd]
@@ -155,15 +156,17 @@ class Case:
             ports=ports,
         )
 
-    def _conditions(self, i: int) -> tuple[dict[int, float], dict[int, float]]:
-        """Parameters that experiment i fixes, and those it adds to; other names are covariates. Conditions of an effect
-        that the simulator lacks count as well: a candidate may have it."""
+    @cached_property
+    def _conditions(self) -> list[tuple[dict[int, float], dict[int, float]]]:
+        """Parameters that each experiment fixes, and those it adds to; other names are covariates. Conditions of an
+        effect that the simulator lacks count as well: a candidate may have it."""
         own, rows = set(self.system.parameters), self.system.info.parameters
         index = {p.name: k for k, p in enumerate(rows) if p.name in own or p.purpose == "condition"}
-        experiment = self.experiments[i]
-        fixed = {index[name]: value for name, value in experiment.conditions.items() if name in index}
-        added = {index[name]: value for name, value in experiment.add.items() if name in index}
-        return fixed, added
+
+        def known(given: Mapping[str, float]) -> dict[int, float]:
+            return {index[name]: value for name, value in given.items() if name in index}
+
+        return [(known(e.conditions), known(e.add)) for e in self.experiments]
 
 
 def make_case(

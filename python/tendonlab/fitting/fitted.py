@@ -141,6 +141,12 @@ class Fitted:
             for residual, jacobian in zip(rows[t], slopes[t], strict=True)
         )
 
+    @cached_property
+    def rows(self) -> tuple[np.ndarray, np.ndarray]:
+        """Whitened residuals of all training experiments as they count, and their derivatives."""
+        residuals = [of.residual(run.residual) for of, run in zip(self.marginals, self.runs, strict=True)]
+        return np.concatenate(residuals), np.concatenate([of.jacobian for of in self.marginals])
+
     def split(self, t: int, residual: np.ndarray) -> list[np.ndarray]:
         """Whitened residuals of training experiment t, its own unknowns marginalised as in this fit, in blocks."""
         return _parts(self.marginals[t].residual(residual), self.runs[t].parts())

@@ -103,7 +103,8 @@ def _regime(name: str, x: np.ndarray, e: np.ndarray, shifts: np.ndarray) -> dict
 
     found = surplus(e)
     best = int(np.argmax(found))
-    chance = np.array([surplus(np.roll(e, int(s))).max() for s in shifts])
+    twice = np.concatenate([e, e])  # moved by s, the excess is a part of it
+    chance = np.array([surplus(twice[len(e) - s : 2 * len(e) - s]).max() for s in shifts])
     return {
         "coordinate": name,
         "range": [float(edges[best]), float(edges[best + 1])],

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -127,10 +126,9 @@ def _score(
 ) -> _Score:
     unit = _unit(fitter.case, p)
     values = {**shaped, p.name: amplitude * unit}
-    residuals = [b.residual for b in base.blocks]
-    moved = _residuals_with(fitter, base, effect, values)
-    directions = [(m - r) / amplitude for m, r in zip(moved, residuals, strict=True)]
-    dd, dr, jd, jr = _products(base, directions)
+    residual, jacobian = base.rows
+    direction = (_residuals_with(fitter, base, effect, values) - residual) / amplitude
+    dd, dr, jd, jr = direction @ direction, direction @ residual, direction @ jacobian, residual @ jacobian
     imitation = solved(base.precision, jd)  # of the direction by the free parameters
     slope, curvature = float(dr - imitation @ jr), max(float(dd - imitation @ jd), 0.0)
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
@@ -147,22 +145,11 @@ def _unit(case: Case, p: ParameterInfo) -> float:
     return (case.scales.get(p.element or "") or next(iter(case.scales.values()))).of(p.dimension) * abs(p.typical)
 
 
-def _products(base: Fitted, directions: list[np.ndarray]) -> tuple[Any, ...]:
-    """d'd, d'r, J'd and J'r over all blocks."""
-    rows = list(zip(directions, base.blocks, strict=True))
-    return (
-        sum(d @ d for d, _ in rows),
-        sum(d @ b.residual for d, b in rows),
-        sum(b.jacobian.T @ d for d, b in rows),
-        sum(b.jacobian.T @ b.residual for _, b in rows),
-    )
-
-
-def _residuals_with(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> list[np.ndarray]:
-    """Whitened residuals of the training experiments at `base` with `effect` at `values`, in block order."""
+def _residuals_with(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> np.ndarray:
+    """Whitened residuals of the training experiments at `base` with `effect` at `values`, as they count."""
     case, system = fitter.case, extended(base.system, {effect: values})
-    blocks: list[np.ndarray] = []
-    for t, i in enumerate(case.train):
-        outputs = case.run(i, system, base.initial[t])["outputs"]
-        blocks += base.split(t, fitter.whitening[i].residual(outputs))
-    return blocks
+    parts = []
+    for i, own, marginal in zip(case.train, base.initial, base.marginals, strict=True):
+        outputs = case.run(i, system, own)["outputs"]
+        parts.append(marginal.residual(fitter.whitening[i].residual(outputs)))
+    return np.concatenate(parts)
