@@ -4,7 +4,8 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,7 +82,9 @@ def micro_sine(time: Array, draw: Draw, *, size: float = 1.0) -> Array:
 
 Shape = Callable[..., Array]
 # kind, size, payload: three repeats and four more to fit, three held out of another kind, amplitude or load
-RICH: tuple[tuple[Shape, float, bool], ...] = (
+Plan = tuple[Shape, float, bool]
+Plans = tuple[Plan, ...]
+RICH: Plans = (
     (slow_reversals, 1.0, False),
     (chirp, 1.0, False),
     (multi_sine, 1.0, False),
@@ -91,7 +94,7 @@ RICH: tuple[tuple[Shape, float, bool], ...] = (
     (sine, 1.3, False),
     (staircase, 1.0, True),
 )
-POOR: tuple[tuple[Shape, float, bool], ...] = (
+POOR: Plans = (
     (sine, 1.0, False),
     (sine, 0.7, False),
     (sine, 1.2, False),
@@ -101,18 +104,25 @@ POOR: tuple[tuple[Shape, float, bool], ...] = (
     (multi_sine, 0.8, False),
     (sine, 1.0, False),
 )
+PLANS: Mapping[str, Plans] = MappingProxyType({"rich": RICH, "poor": POOR})
 
 
 def session(
-    draw: Draw, *, excitation: str, sample_time: float, num_samples: int, has_repeats: bool = True, arm: float = 0.25
+    draw: Draw,
+    *,
+    excitation: str,
+    sample_time: float,
+    num_samples: int,
+    has_repeats: bool = True,
+    arm: float = 0.25,
+    plans: Mapping[str, Plans] = PLANS,
 ) -> list[Experiment]:
     """Ten experiments, "rich" or "poor", in the order recorded; one repeated at the start, in the middle and at the
     end. Without repeats, other motions of the same kind take the places of the second and third. The payload hangs
-    `arm` m from the axis.
+    `arm` m from the axis. `plans`: what is recorded under each excitation.
     """
-    plans = RICH if excitation == "rich" else POOR
     time: Array = np.arange(num_samples, dtype=float) * sample_time
-    repeated, train, test = plans[0], plans[1:5], plans[5:]
+    repeated, train, test = plans[excitation][0], plans[excitation][1:5], plans[excitation][5:]
     order = [("train", p) for p in train] + [("test", p) for p in test]
     order = [order[i] for i in draw.permutation(len(order))]
     first = _reference(repeated, time, draw)
@@ -127,7 +137,7 @@ def session(
     return _runs(slots, draw, seconds=num_samples * sample_time, arm=arm)
 
 
-def _fresh(plan: tuple[Shape, float, bool], time: Array, draw: Draw) -> list[Array]:
+def _fresh(plan: Plan, time: Array, draw: Draw) -> list[Array]:
     """Two more motions of a kind, from a stream of their own: all else is drawn alike with and without repeats."""
     fresh = draw.spawn(1)[0]
     return [_reference(plan, time, fresh) for _ in range(2)]
@@ -157,7 +167,7 @@ def _runs(
     return runs
 
 
-def _reference(plan: tuple[Shape, float, bool], time: Array, draw: Draw) -> Array:
+def _reference(plan: Plan, time: Array, draw: Draw) -> Array:
     shape, size, _ = plan
     centre = draw.uniform(-0.5, 0.5)
     wave = shape(time, draw, size=size)

@@ -1,9 +1,10 @@
 """The kinds of rigs that the protocol draws, by name."""
 
+from .ccsrm import CCSRM
 from .rigid_joint import RIGID_JOINT
 from .servo_pendulum import SERVO_PENDULUM
 from .two_inertia import TWO_INERTIA
 
-__all__ = ["RIGID_JOINT", "SERVO_PENDULUM", "SYSTEMS", "TWO_INERTIA"]
+__all__ = ["CCSRM", "RIGID_JOINT", "SERVO_PENDULUM", "SYSTEMS", "TWO_INERTIA"]
 
-SYSTEMS = {system.kind: system for system in (TWO_INERTIA, RIGID_JOINT, SERVO_PENDULUM)}
+SYSTEMS = {system.kind: system for system in (TWO_INERTIA, RIGID_JOINT, SERVO_PENDULUM, CCSRM)}

@@ -1,0 +1,136 @@
+"""Time-stepping simulation of joint 1 on its cables, many lanes at once:
+
+    J theta1'' = lever (T21 - T11) - friction of the joint,    theta2: prescribed, a cubic spline through the samples
+
+Midpoint stepping: half a drift, a kick, half a drift; dry friction of the joint is an impulse clipped at step * level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from tendonlab.blind.description import Array, Lanes, Run, Scene
+from tendonlab.blind.friction import Friction
+from tendonlab.blind.sensing import Reading
+
+from .ccsrm_cables import Cables, ElasticEnds
+
+SECTIONS = ("tension_11", "tension_12", "tension_13", "tension_21", "tension_22", "tension_23")
+
+
+def simulate(lanes: Lanes, scene: Scene, step: float, stride: int) -> Run:
+    """Run all lanes; `step` in s must divide the sample time (ValueError otherwise)."""
+    num_steps = round(scene.sample_time / step)
+    if num_steps < 1 or abs(num_steps * step - scene.sample_time) > 1e-9:
+        raise ValueError(f"step = {step} s: expected a whole fraction of the sample time {scene.sample_time} s")
+    rows = list(_Joint(lanes, scene, num_steps).samples(stride))
+    outputs, state = (np.stack([row[i] for row in rows], axis=1) for i in range(2))
+    if not np.all(np.isfinite(state)):
+        raise ArithmeticError(f"state is not finite: step {step} s is too long for these parameters")
+    time: Array = np.arange(len(rows), dtype=float) * scene.sample_time * stride
+    return Run(time=time, command=scene.reference[scene.num_settle :: stride], outputs=outputs, state=state)
+
+
+class _Joint:
+    def __init__(self, lanes: Lanes, scene: Scene, num_steps: int) -> None:
+        self.scene, self.num_steps, self.step = scene, num_steps, scene.sample_time / num_steps
+        at = np.arange(len(scene.reference)) * scene.sample_time
+        self.pieces: Array = CubicSpline(at, scene.reference).c  # (4, num_samples - 1, n), the highest power first
+        self.names = lanes.system.output_names
+        self.sections = [SECTIONS.index(name) for name in self.names[1:]]
+        self.kick, self.friction = self.step / lanes.get("joint_inertia"), _friction(lanes)
+        self.bristle = self.friction.bristle()
+        self.groups = _groups(lanes, self.step)
+        self.bias = np.stack([lanes.get(f"sensor.{name}_bias") for name in self.names])
+        delays = [lanes.get(f"sensor.{name}_delay") for name in self.names]
+        self.readings = [Reading(d, sample_time=scene.sample_time, num_steps=num_steps) for d in delays]
+        self.has_delay = any(reading.capture for reading in self.readings)
+        start = np.stack([scene.reference[0], np.zeros(lanes.size)]) if scene.initial is None else scene.initial
+        self.q, self.v = start[0].copy(), start[1].copy()
+        tension = np.tile(lanes.get("pretension"), (len(SECTIONS), 1))
+        self.tension, self.change = tension, np.zeros_like(tension)  # in the middle of the last step, over that step
+
+    def samples(self, stride: int) -> Iterator[tuple[Array, Array]]:
+        """Yield readings (outputs, n) and angle and speed of joint 1 (2, n) at every logged sample."""
+        last = len(self.scene.reference) - 1
+        for k in range(last + 1):
+            measured = self._measure(k)
+            if k >= self.scene.num_settle and (k - self.scene.num_settle) % stride == 0:
+                yield measured, np.stack([self.q, self.v])
+            if k < last:
+                self._advance(k)
+
+    def _measure(self, k: int) -> Array:
+        tension = self.tension + 0.5 * self.change
+        values = [self.q, *tension[self.sections]]
+        measured = np.stack([r.read(y) for r, y in zip(self.readings, values, strict=True)]) + self.bias
+        if self.scene.noise is not None:
+            measured += self.scene.noise[:, k]
+        if self.scene.resolution is not None:
+            grid = np.where(self.scene.resolution > 0, self.scene.resolution, 1.0)
+            measured = np.where(self.scene.resolution > 0, np.round(measured / grid) * grid, measured)
+        return measured
+
+    def _advance(self, k: int) -> None:
+        a, b, c, d = self.pieces[:, k]
+        self.q = self.q + 0.5 * self.step * self.v
+        for j in range(self.num_steps):
+            s = (j + 0.5) * self.step
+            self._kick(((a * s + b) * s + c) * s + d, (3.0 * a * s + 2.0 * b) * s + c, j)
+            self.q = self.q + self.step * self.v
+        self.q = self.q - 0.5 * self.step * self.v
+
+    def _kick(self, driver: Array, rate: Array, index: int) -> None:
+        old, laws = self.v, self.friction
+        tension, torque = self._pull(np.stack([self.q, driver]), np.stack([old, rate]))
+        self.change, self.tension = tension - self.tension, tension
+        force = (torque[0] - laws.smooth(old[None])[0]) * self.kick
+        direction = np.sign(old + force)
+        level = laws.level(old[None], load=torque[1:], direction=direction[None])
+        if laws.has_bristle:
+            force = force - self.kick * laws.bristle_force(self.bristle, old[None], level=level, step=self.step)[0]
+            level = np.where(laws.bristled, 0.0, level)
+        free = old + force
+        self.v = np.copysign(np.maximum(np.abs(free) - self.kick * level[0], 0.0), free)
+        if self.has_delay:
+            values = [self.q, *tension[self.sections]]
+            changes = [0.5 * self.step * (old + self.v), *self.change[self.sections]]
+            for reading, value, change in zip(self.readings, values, changes, strict=True):
+                reading.note(index, value, change)
+
+    def _pull(self, angle: Array, rate: Array) -> tuple[Array, Array]:
+        """Tensions (6, n); torque of the cables on joint 1, and of their middle sections alone, N*m, (2, n)."""
+        tension, lever = np.empty_like(self.tension), np.empty_like(self.q)
+        for rows, cables in self.groups:
+            tension[:, rows] = cables.tensions(angle[:, rows], rate[:, rows])
+            lever[rows] = cables.lever(angle[:, rows])
+        return tension, lever * (tension[3:5] - tension[:2])
+
+
+def _groups(lanes: Lanes, step: float) -> list[tuple[NDArray[np.int64] | slice, Cables]]:
+    """The lanes whose ends do not stretch, and those whose ends do."""
+    soft = lanes.get("ends_compliance") > 0
+    if not soft.any():
+        return [(slice(None), Cables(lanes, step))]
+    kinds = [(np.flatnonzero(~soft), Cables), (np.flatnonzero(soft), ElasticEnds)]
+    return [(rows, kind(_part(lanes, rows), step)) for rows, kind in kinds if rows.size]
+
+
+def _part(lanes: Lanes, rows: NDArray[np.int64]) -> Lanes:
+    parameters: Mapping[str, Array] = {name: value[rows] for name, value in lanes.parameters.items()}
+    named = tuple(lanes.effect[i] for i in rows) if lanes.effect else ()
+    return replace(lanes, parameters=parameters, scale=lanes.scale[:, rows], form=lanes.form[rows], effect=named)
+
+
+def _friction(lanes: Lanes) -> Friction:
+    """Of joint 1, the last slot."""
+    laws = Friction(lanes.parameters, slots=lanes.system.slots[-1:], scale=lanes.scale[-1:], form=lanes.form)
+    for effect in ("coulomb", "viscous"):
+        chosen = np.array([name == f"joint:{effect}" for name in lanes.effect] or np.zeros(lanes.size), dtype=bool)
+        laws.choose_other_form(0, chosen & (lanes.form != 0), effect=effect)
+    return laws
