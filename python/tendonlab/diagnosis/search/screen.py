@@ -138,6 +138,15 @@ def _score(
     return _Score(gain, {**values, p.name: start}, 0.5 * curvature)
 
 
+def expected_gain(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> float:
+    """Nats that `effect` brings at these values, once the free parameters follow."""
+    residuals = [b.residual for b in base.blocks]
+    moved = _residuals_with(fitter, base, effect, values)
+    dd, dr, jd, jr = _products(base, [m - r for m, r in zip(moved, residuals, strict=True)])
+    imitation = solved(base.precision, jd)
+    return float(-(dr - imitation @ jr) - 0.5 * (dd - imitation @ jd))
+
+
 def _unit(case: Case, p: ParameterInfo) -> float:
     """The typical size of an amplitude on this rig."""
     if p.purpose == "share":

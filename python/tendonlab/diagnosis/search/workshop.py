@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from tendonlab import _core
 from tendonlab.diagnosis.search.refit import refit
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
+from tendonlab.diagnosis.search.shares import with_whole_shares
 from tendonlab.diagnosis.search.trial import Trial, counted_alike
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -57,7 +58,7 @@ class Workshop:
 
 
 def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> list[Trial]:
-    fit = refit(fitter, base, candidate, pace=pace)
+    fit = refit(fitter, base, with_whole_shares(fitter, base, candidate), pace=pace)
     return [Trial.of(candidate.effect, fit, base)] if fit else []
 
 
