@@ -95,6 +95,23 @@ def test_elastic_ends_soften_a_joint_without_friction() -> None:
     np.testing.assert_allclose(run["tension_22"], expected, atol=1e-2)
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_slip_on_elastic_ends_dies_out_beside_a_joint_that_sticks(tolerance: float) -> None:
+    """At standstill slips pass zero more slowly than a guard resolves: no reason to creep through the rest."""
+    parameters = {**OWN, "cable_stiffness": 3e4, "pretension": 40.0, "inertia": 0.012, "joint_coulomb": 0.045}
+    parameters |= {"joint_viscous": 0.023, "friction_coefficient": 0.18, "smallest_level": 1e-3, "contact_viscous": 500}
+    parameters |= {"bristle_stiffness": 1.8e6, "bristle_damping": 1.3e3}
+    own = ("contact:capstan", "contact:presliding", "contact:viscous", "joint:coulomb", "joint:viscous")
+    system = System(kind="ccsrm", parameters=parameters, effects=own)
+    time = np.arange(0.0, 4.0, 0.01)
+    x = np.clip((time - 0.2) / 0.5, 0.0, 1.0)
+    log = pd.DataFrame({"driver_angle": 0.15 * x**3 * (10 - 15 * x + 6 * x**2)}, index=pd.Index(time, name="t"))
+    run = system.with_effects({"ends:compliance": {"compliance": 4e-6}}).simulate(log, tolerance=tolerance)
+    rest = run["joint_angle"][run["joint_angle"].index > 1.5]
+    assert np.ptp(rest) < 1e-6
+    assert run.num_events < 100
+
+
 def test_laws_that_share_a_coefficient_state_it_once() -> None:
     info = System(kind="ccsrm", parameters=OWN).info
     assert [p.name for p in info.parameters].count("friction_coefficient") == 1

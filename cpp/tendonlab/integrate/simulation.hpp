@@ -143,8 +143,9 @@ class Simulation {
     double share = 2;
     double toward = 0;   ///< which way a gap is crossed
     bool stale = false;  ///< the step began on its guard, in a mode that does not hold
+    bool past = false;   ///< it began beyond its guard, by more than rounding
   };
-  static constexpr double on_guard = 1e-13;
+  static constexpr double on_guard = 1e-13, past_guard = 1e-14;
   static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
   static constexpr int PAUSES = 16;      ///< steps that end on knots after one that passed a knot has failed
 
@@ -162,7 +163,8 @@ class Simulation {
   void aim(const Crossing& first, double length, Trajectory& trajectory) {
     ++trajectory.rejected;
     retakes = true;
-    const bool now = first.stale ? length < 1e4 * resolved() : first.share * length < resolved();
+    const bool now =
+        first.stale ? first.past || length < 1e4 * resolved() : first.share * length < resolved();
     if (now && first.stale && first.mode < System::directions)
       choose_again(first);
     else if (now)
@@ -222,9 +224,9 @@ class Simulation {
       const double toward = plain_contact.toward(m, s.to, plain_frame, drive), after = margin(m, s.to, toward);
       if (after >= -on_guard) continue;
       const double before = margin(m, s.from, toward);
-      if (before <= on_guard) return {m, 0, toward, true};
+      if (before <= on_guard) return {m, 0, toward, true, before < -past_guard && m < System::directions};
       const double share = root(m, toward, s, before, after);
-      if (share < first.share) first = {m, share, toward, false};
+      if (share < first.share) first = {m, share, toward};
     }
     return first;
   }
