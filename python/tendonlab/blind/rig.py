@@ -125,7 +125,8 @@ def _outputs(system: System, effect: str, draw: np.random.Generator) -> tuple[st
 
 def forms_of(system: System, effect: str) -> tuple[str, ...]:
     """Functional forms of an effect, the documented one first."""
-    return (FORMS | dict(system.forms)).get(effect.partition(":")[2], ("documented",))
+    forms = FORMS | dict(system.forms)
+    return forms.get(effect, forms.get(effect.partition(":")[2], ("documented",)))
 
 
 def _form(system: System, effect: str, draw: np.random.Generator) -> int:
