@@ -89,7 +89,7 @@ class Cables:
 
 class ElasticEnds(Cables):
     """Ends that stretch: slip is what balances middle section, friction and end section. In the other form an end
-    stiffens as it is pulled, like a strand whose wires still settle: its stiffness is T/(c T_p)."""
+    stiffens as it is pulled, like a strand whose wires still settle: its stiffness is √(T/T_p)/c."""
 
     def __init__(self, lanes: Lanes, step: float) -> None:
         super().__init__(lanes, step)
@@ -99,9 +99,9 @@ class ElasticEnds(Cables):
     def _ends(self, stretch: Array) -> tuple[Array, Array]:
         """Tension of the end sections, N, and its slope, N/m."""
         straight = self.pretension + stretch / self.compliance
-        rising = self.pretension * np.exp(np.clip(stretch / (self.compliance * self.pretension), -30.0, 3.0))
-        tension = np.where(self.stiffens, rising, straight)
-        slope = np.where(self.stiffens, rising / self.pretension, 1.0) / self.compliance
+        root = np.maximum(1.0 + 0.5 * stretch / (self.compliance * self.pretension), 0.0)
+        tension = np.where(self.stiffens, self.pretension * root * root, straight)
+        slope = np.where(self.stiffens, root, 1.0) / self.compliance
         return np.maximum(tension, 0.0), slope
 
     def tensions(self, angle: Array, rate: Array) -> Array:
