@@ -1,10 +1,11 @@
 """The kinds of rigs that the protocol draws, by name."""
 
+from .bowden_pair import BOWDEN_PAIR
 from .ccsrm import CCSRM
 from .rigid_joint import RIGID_JOINT
 from .servo_pendulum import SERVO_PENDULUM
 from .two_inertia import TWO_INERTIA
 
-__all__ = ["CCSRM", "RIGID_JOINT", "SERVO_PENDULUM", "SYSTEMS", "TWO_INERTIA"]
+__all__ = ["BOWDEN_PAIR", "CCSRM", "RIGID_JOINT", "SERVO_PENDULUM", "SYSTEMS", "TWO_INERTIA"]
 
-SYSTEMS = {system.kind: system for system in (TWO_INERTIA, RIGID_JOINT, SERVO_PENDULUM, CCSRM)}
+SYSTEMS = {system.kind: system for system in (TWO_INERTIA, RIGID_JOINT, SERVO_PENDULUM, CCSRM, BOWDEN_PAIR)}
