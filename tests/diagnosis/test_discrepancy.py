@@ -25,7 +25,7 @@ def case(residual: Any) -> Any:
         train=range(5),
         measured=[0],
         scatter=((), ()),
-        prepared=[SimpleNamespace(measured=np.zeros((1, len(TIME))))] * 5,
+        prepared=[SimpleNamespace(measured=np.zeros((1, len(TIME))), core=SimpleNamespace(time=5.0 + TIME))] * 5,
         system=SimpleNamespace(info=SimpleNamespace(ports=["joint"])),
         run=lambda i, *_, **__: runs[i],
     )
@@ -53,6 +53,20 @@ def test_what_depends_on_position_and_direction_is_foretold(form: Any) -> None:
 
     assert followed(case(left), MODEL) == pytest.approx(0.5, abs=0.1)
     assert not may_be_noise(case(left), MODEL)
+
+
+def test_friction_that_drifts_alike_in_every_run_is_foretold() -> None:
+    def left(q: np.ndarray, v: np.ndarray, _: int) -> np.ndarray:
+        own = np.sign(v) * np.exp(-TIME / 4.0)
+        own -= np.sign(v) * np.mean(np.exp(-TIME / 4.0))  # what a fit has left
+        return own + np.sqrt(np.mean(own**2)) * noise(q)
+
+    assert followed(case(left), MODEL) == pytest.approx(0.5, abs=0.1)
+
+
+def test_how_runs_begin_is_no_drift() -> None:
+    """An initial state that is a little wrong leaves the same in every run, soon over."""
+    assert followed(case(lambda q, v, k: np.exp(-TIME / 0.1) + 0.05 * noise(q)), MODEL) < FOLLOWED
 
 
 @pytest.mark.parametrize("left", [lambda q, v, k: noise(q), lambda q, v, k: slow(q), lambda q, v, k: (-1.0) ** k * q])

@@ -1,4 +1,5 @@
-"""Whether what a model leaves follows the motion: noise of a sensor does not, and what the model lacks often does."""
+"""Whether what a model leaves follows the motion, or drifts along every run: noise of a sensor does neither, and what
+the model lacks often does."""
 
 from __future__ import annotations
 
@@ -8,12 +9,13 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 
 NUM_KNOTS = 9  # of the map over the position, at quantiles
+NUM_TIMES = 3  # of the map over the time since a run began: a drift, not how it starts
 SLOW = 0.03  # of the velocity's rms: neither forwards nor backwards
 RIDGE = 0.02  # prior weight of each cell, of an even share of the samples
 
 
 FAR_TRAINED = 8.0  # mean square over what the sensors and run-to-run friction may leave, beyond which it is no noise
-FOLLOWED = 0.2  # share of the residual that follows the motion, beyond which it is no noise
+FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
 
 
 def may_be_noise(case: Case, model: Fitted) -> bool:
@@ -22,31 +24,34 @@ def may_be_noise(case: Case, model: Fitted) -> bool:
 
 
 def followed(case: Case, model: Fitted) -> float:
-    """Largest share of the mean square residual of an output that a map over position and direction of a port foretells
-    in experiments other than those that it was learnt from; 0 where maps mislead, and of a single experiment."""
+    """Largest share of the mean square residual of an output that a map over direction and position of a port, or over
+    its direction and the time since the run began, foretells in experiments other than those that it was learnt from; 0
+    where maps mislead, and of a single experiment."""
     if len(case.train) < 2:
         return 0.0
+    times = [np.asarray(case.prepared[i].core.time) for i in case.train]
+    times = [time - time[0] for time in times]
     runs = [case.run(i, model.system, own, ports=True) for i, own in zip(case.train, model.initial, strict=True)]
     residuals = [run["outputs"] - case.prepared[i].measured for i, run in zip(case.train, runs, strict=True)]
     shares = [0.0]
     for port in range(len(case.system.info.ports)):
-        motions = [np.asarray(run["ports"])[port] for run in runs]
-        if np.ptp(np.concatenate([m[1] for m in motions])) == 0.0:
+        velocities, positions = ([np.asarray(run["ports"])[port][k] for run in runs] for k in (0, 1))
+        if np.ptp(np.concatenate(positions)) == 0.0:
             continue
-        cells = _cells(motions)
-        shares += [_foretold(cells, [r[c] for r in residuals]) for c in case.measured]
+        for cells in (_cells(velocities, positions, NUM_KNOTS), _cells(velocities, times, NUM_TIMES)):
+            shares += [_foretold(cells, [r[c] for r in residuals]) for c in case.measured]
     return max(shares)
 
 
-def _cells(motions: list[np.ndarray]) -> list[np.ndarray]:
-    """Weights of the cells of the map at each sample of each experiment, (samples, cells)."""
-    velocity, position = (np.concatenate([m[k] for m in motions]) for k in (0, 1))
-    knots = np.unique(np.quantile(position, np.linspace(0.0, 1.0, NUM_KNOTS)))
-    slow = SLOW * float(np.sqrt(np.mean(np.square(velocity))))
+def _cells(velocities: list[np.ndarray], over: list[np.ndarray], num_knots: int) -> list[np.ndarray]:
+    """Weights of the cells of a map at each sample of each experiment, (samples, cells): directions, and `num_knots`
+    knots at quantiles of what the map is `over`."""
+    knots = np.unique(np.quantile(np.concatenate(over), np.linspace(0.0, 1.0, num_knots)))
+    slow = SLOW * float(np.sqrt(np.mean(np.square(np.concatenate(velocities)))))
     found = []
-    for motion in motions:
-        direction = np.sign(motion[0]) * (np.abs(motion[0]) > slow)
-        near = np.array([np.interp(motion[1], knots, row) for row in np.eye(len(knots))]).T
+    for velocity, place in zip(velocities, over, strict=True):
+        direction = np.sign(velocity) * (np.abs(velocity) > slow)
+        near = np.array([np.interp(place, knots, row) for row in np.eye(len(knots))]).T
         found.append(np.concatenate([near * (direction == d)[:, None] for d in (-1.0, 0.0, 1.0)], axis=1))
     return found
 
