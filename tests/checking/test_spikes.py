@@ -34,6 +34,13 @@ def test_smooth_motion_has_none() -> None:
     assert not outliers(CHIRP + NOISE).any()
 
 
+def test_noise_where_a_motion_turns_is_none() -> None:
+    """While it moves on each sample is the median of its neighbours: noise shows at the turns alone."""
+    for seed in (16, 31):
+        noise = 0.12 * np.random.default_rng(seed).standard_normal(len(TIME))
+        assert not outliers(np.round(20.0 * np.sin(2.0 * TIME) + noise, 2)).any()
+
+
 def test_a_corner_is_none() -> None:
     """A joint that hits a stop turns at once."""
     stopped = np.minimum(2.0 * TIME, 7.0) + NOISE

@@ -75,6 +75,8 @@ def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
     middle = median_filter(y, WINDOW, mode="nearest")
     away = np.abs(y - middle)
     noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="mirror"))
+    # A sample of a motion faster than its noise is the median itself, and says nothing of the noise.
+    noise = np.fmax(noise, 1.4826 * float(np.median(np.abs(np.diff(y, 4)))) / np.sqrt(70.0))
     bends = np.abs(np.diff(middle, 2, prepend=middle[0], append=middle[-1]))
     allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * maximum_filter1d(bends, WINDOW)
     found[kept] = away > allowed

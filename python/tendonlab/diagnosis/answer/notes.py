@@ -115,7 +115,7 @@ def no_noise(trained: float, followed: float) -> list[str]:
     found = []
     if followed >= FOLLOWED:
         found.append(
-            "The remaining error follows the motion, or drifts alike in every run: a map over direction and position or "
+            "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "
             "direction and time since the start, learnt from other experiments, foretells "
             f"{100 * followed:.0f} % of its mean square. So it is not noise."
         )
