@@ -14,7 +14,7 @@ from tendonlab.cli.demo import bundled
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter, pose
-from tendonlab.fitting.starts import STEPS, cooled, reseated
+from tendonlab.fitting.starts import STEPS, cooled
 from tendonlab.rehearsal.rig import simulated_rig
 
 
@@ -70,12 +70,12 @@ def test_a_run_in_a_wrong_initial_state_starts_again() -> None:
     problem = pose(case, white(case.noise), right.system)
     there = problem.at(right.system, wrong).linearise()
     assert there.cost > 1.1 * right.cost
-    assert reseated(problem, there, _core.Cancel()).cost < 1.001 * right.cost
+    assert problem.reseated(there, _core.Cancel(), steps=2 * STEPS).cost < 1.001 * right.cost
     fitter = Fitter(case, white(case.noise), _core.Cancel())
     assert fitter.settled(there).counted().evidence > fitter.settled(right).counted().evidence - 1.0
     cancel = _core.Cancel()
     cancel.set()
-    assert reseated(problem, there, cancel) is there
+    assert problem.reseated(there, cancel) is there
 
 
 @pytest.mark.slow

@@ -60,6 +60,11 @@ class Run:
             by_own=rows[:, None] * self.by_own,
         )
 
+    @property
+    def cost(self) -> float:
+        """Sum of squares of residuals and own unknowns."""
+        return float(self.residual @ self.residual + self.own @ self.own)
+
     def parts(self) -> list[np.ndarray]:
         """Rows of each block of 2 s, as masks."""
         return [self.block == b for b in range(int(self.block.max()) + 1)]

@@ -18,9 +18,11 @@ from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
 from tendonlab.fitting.noise import Floor, blocks_of, white
 from tendonlab.fitting.priors import free_parameters
-from tendonlab.fitting.starts import reseated
 from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
+
+NUM_RESTARTS = 3
+BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,6 +60,25 @@ class Problem:
         """The same problem with one free parameter held at `value`."""
         free = tuple(f for f in self.free if f.name != name)
         return replace(self, system=self.system.with_parameters({name: value}), free=free)
+
+    def reseated(self, fit: Fitted, cancel: _core.Cancel, *, steps: int = 0) -> Fitted:
+        """The `fit` of this problem, again with the initial states of some runs found anew from what is believed of
+        them: early steps of a fit may leave a run that starts at rest in a place where stiction holds it. `steps`:
+        iterations for these states."""
+        for _ in range(NUM_RESTARTS):
+            if cancel.is_set() or not any(len(run.own) for run in fit.runs):
+                return fit
+            alone = replace(self, free=(), system=fit.system, initial=())
+            fresh = alone.solve(cancel=cancel, max_iterations=steps) if steps else alone.linearise()
+            better = [new.cost < BETTER * old.cost for new, old in zip(fresh.runs, fit.runs, strict=True)]
+            if not any(better):
+                return fit
+            own = [new if b else old for new, old, b in zip(fresh.initial, fit.initial, better, strict=True)]
+            again = self.at(fit.system, own).solve(cancel=cancel)
+            if not again.cost < fit.cost:
+                return fit
+            fit = again
+        return fit
 
     def return_to_prior(self, fit: Fitted) -> Fitted:
         """The `fit` of this problem with every parameter that the data do not constrain back at its prior's middle.
@@ -194,7 +215,7 @@ class Fitter:
         """The fit, again where some runs fit better from the initial states that are believed of them."""
         floor = replace(self.floor, sd=fit.levels.tolist())
         problem = pose(self.case, floor, fit.system, added=fit.added, initial=fit.initial)
-        return reseated(problem, fit, self.cancel, steps=0)
+        return problem.reseated(fit, self.cancel)
 
     def releveled(self, fit: Fitted) -> Fitted:
         """Without repeats: the fit as it is, under the noise that it leaves itself."""

@@ -22,7 +22,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Problem, pose
-from tendonlab.fitting.starts import cooled, reseated
+from tendonlab.fitting.starts import cooled
 from tendonlab.identification.result import Identification
 from tendonlab.progress import track
 from tendonlab.seed import generator
@@ -37,6 +37,7 @@ __all__ = ["Identification", "identify"]
 START_SHARE = 0.2  # of its typical size: where an added effect starts; at 0 its shape would have no derivative
 LARGER_SHARES = (1.0, 3.0)  # where an added effect starts again that has vanished
 VANISHED = 1e-2  # of its typical size, below which an added effect has vanished
+STATE_STEPS = 10  # iterations for initial states that are found anew
 
 
 def identify(
@@ -145,7 +146,7 @@ def _solve(starts: Sequence[Problem], *, progress: bool) -> Fitted:
 
 
 def _solved(start: Problem, cancel: _core.Cancel) -> Fitted:
-    return reseated(start, cooled(start, cancel).solve(cancel=cancel), cancel)
+    return start.reseated(cooled(start, cancel).solve(cancel=cancel), cancel, steps=STATE_STEPS)
 
 
 def _best(jobs: Sequence[Future[Fitted]]) -> Fitted:

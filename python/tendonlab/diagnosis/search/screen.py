@@ -126,11 +126,9 @@ def _score(
 ) -> _Score:
     unit = _unit(fitter.case, p)
     values = {**shaped, p.name: amplitude * unit}
-    residual, jacobian = base.rows
-    direction = (_residuals_with(fitter, base, effect, values) - residual) / amplitude
-    dd, dr, jd, jr = direction @ direction, direction @ residual, direction @ jacobian, residual @ jacobian
-    imitation = solved(base.precision, jd)  # of the direction by the free parameters
-    slope, curvature = float(dr - imitation @ jr), max(float(dd - imitation @ jd), 0.0)
+    slope, curvature = _beyond_imitation(
+        base, (_residuals_with(fitter, base, effect, values) - base.rows[0]) / amplitude
+    )
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
     at = min(max(at, p.lower / unit), p.upper / unit)
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
@@ -140,11 +138,16 @@ def _score(
 
 def expected_gain(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> float:
     """Nats that `effect` brings at these values, once the free parameters follow."""
-    residuals = [b.residual for b in base.blocks]
-    moved = _residuals_with(fitter, base, effect, values)
-    dd, dr, jd, jr = _products(base, [m - r for m, r in zip(moved, residuals, strict=True)])
+    slope, curvature = _beyond_imitation(base, _residuals_with(fitter, base, effect, values) - base.rows[0])
+    return -slope - 0.5 * curvature
+
+
+def _beyond_imitation(base: Fitted, direction: np.ndarray) -> tuple[float, float]:
+    """Slope and curvature of the cost along a change of the residuals, less what the free parameters imitate."""
+    residual, jacobian = base.rows
+    dd, dr, jd, jr = direction @ direction, direction @ residual, direction @ jacobian, residual @ jacobian
     imitation = solved(base.precision, jd)
-    return float(-(dr - imitation @ jr) - 0.5 * (dd - imitation @ jd))
+    return float(dr - imitation @ jr), max(float(dd - imitation @ jd), 0.0)
 
 
 def _unit(case: Case, p: ParameterInfo) -> float:
