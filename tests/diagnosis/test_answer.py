@@ -30,6 +30,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     }
     nominal: Any = SimpleNamespace(mean_square=77.0)
     monkeypatch.setattr(answer, "followed", lambda case, model: 0.25)
+    monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
     search: Any = SimpleNamespace(tuned=tuned, selected=("x",), fitter=fitter)
@@ -40,7 +41,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     search.selected = ()
     none = _levels(search, nominal, stages, floor)
     assert none.explained is None
-    assert (none.trained, none.followed) == ((1.0, 0.0) if repeated else (20.0, 0.25))
+    assert (none.trained, none.followed, none.scattered) == ((1.0, 0.0, 0.0) if repeated else (20.0, 0.25, 3.0))
 
 
 def test_the_gap_lists_floor_and_error_of_each_stage() -> None:

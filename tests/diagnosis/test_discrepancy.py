@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED, followed, may_be_noise
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, followed, may_be_noise, scattered
 
 TIME = np.linspace(0.0, 10.0, 1000)
 RNG = np.random.default_rng(3)
@@ -31,7 +31,7 @@ def case(residual: Any) -> Any:
     )
 
 
-MODEL: Any = SimpleNamespace(system=None, initial=[()] * 5, over_scatter=lambda groups: float(groups))
+MODEL: Any = SimpleNamespace(system=None, initial=[(0.0, 0.0)] * 5, over_scatter=lambda groups: float(groups))
 
 
 def noise(size: np.ndarray) -> np.ndarray:
@@ -80,6 +80,18 @@ def test_noise_is_not_foretold(left: Any) -> None:
 def test_too_much_is_no_noise() -> None:
     large: Any = SimpleNamespace(**{**vars(MODEL), "over_scatter": lambda _: 1.01 * FAR_TRAINED})
     assert not may_be_noise(case(lambda q, v, k: noise(q)), large)
+
+
+def test_friction_that_differs_too_much_from_run_to_run_is_no_noise() -> None:
+    """Factors of two elements behind a state: the second one's rms is 5 %, where 2 % is plausible."""
+    factors = [(0.3, 0.01, 0.05 * sign) for sign in (1, -1, 1, -1, 1)]
+    wild: Any = SimpleNamespace(**{**vars(MODEL), "initial": factors})
+    rig = case(lambda q, v, k: noise(q))
+    assert scattered(rig, wild) == pytest.approx(6.25)
+    assert not may_be_noise(rig, wild)
+    assert scattered(rig, SimpleNamespace(initial=[(0.3, 0.01, 0.02)] * 5)) < FAR_SCATTERED  # type: ignore[arg-type]
+    rig.scatter = ()
+    assert scattered(rig, wild) == 0.0
 
 
 def test_samples_that_were_not_measured_and_exact_models_are_no_discrepancy() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from tendonlab.diagnosis.answer import notes
+from tendonlab.diagnosis.answer.verdict import Levels
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.fitted import Fitted
@@ -77,8 +78,11 @@ def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
 
 
 def test_an_error_that_is_no_noise_is_explained() -> None:
-    assert notes.no_noise(1.0, 0.1) == []
-    (follows,) = notes.no_noise(1.0, 0.45)
+    near = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, followed=0.1)
+    assert notes.no_noise(near) == []
+    (follows,) = notes.no_noise(replace(near, followed=0.45))
     assert "foretells 45 % of its mean square" in follows
-    (large,) = notes.no_noise(16.0, 0.0)
+    (large,) = notes.no_noise(replace(near, trained=16.0))
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
+    (differs,) = notes.no_noise(replace(near, scattered=6.25))
+    assert "friction that differs by 5 % from run to run" in differs

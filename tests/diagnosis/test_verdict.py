@@ -9,7 +9,7 @@ import pytest
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
 from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
-from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 
 
 def nothing_selected(*, refitted: float, repeated: bool = False, tuned: float = 1.0) -> Verdict:
@@ -28,7 +28,9 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
     assert found.probability["parameters_only"] < 0.01
 
 
-@pytest.mark.parametrize("signs", [{"trained": 1.5 * FAR_TRAINED}, {"followed": 2.0 * FOLLOWED}])
+@pytest.mark.parametrize(
+    "signs", [{"trained": 1.5 * FAR_TRAINED}, {"followed": 2.0 * FOLLOWED}, {"scattered": 1.5 * FAR_SCATTERED}]
+)
 def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(signs: dict[str, float]) -> None:
     near = Levels(nominal=1e4, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False)
     assert decide((), (), near).verdict == "parameters_only"

@@ -7,6 +7,7 @@ import numpy as np
 
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import RUN_TO_RUN_UNKNOWN
 
 NUM_KNOTS = 9  # of the map over the position, at quantiles
 NUM_TIMES = 3  # of the map over the time since a run began: a drift, not how it starts
@@ -15,12 +16,24 @@ RIDGE = 0.02  # prior weight of each cell, of an even share of the samples
 
 
 FAR_TRAINED = 8.0  # mean square over what the sensors and run-to-run friction may leave, beyond which it is no noise
+FAR_SCATTERED = 4.0  # mean square of run-to-run factors over what is plausible: beyond twice that they are no noise
 FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
 
 
 def may_be_noise(case: Case, model: Fitted) -> bool:
     """Whether nothing in what a model leaves tells that anything is missing, where nothing repeats."""
-    return model.over_scatter(len(case.scatter)) < FAR_TRAINED and followed(case, model) < FOLLOWED
+    if model.over_scatter(len(case.scatter)) >= FAR_TRAINED or scattered(case, model) >= FAR_SCATTERED:
+        return False
+    return followed(case, model) < FOLLOWED
+
+
+def scattered(case: Case, model: Fitted) -> float:
+    """Mean square of the logarithms of the factors that a model needs on friction from run to run, of the element where
+    it is largest, over what is plausible; 0 where there are none."""
+    if not case.scatter:
+        return 0.0
+    factors = np.array([own[len(own) - len(case.scatter) :] for own in model.initial])
+    return float(np.max(np.mean(np.square(factors / RUN_TO_RUN_UNKNOWN), axis=0)))
 
 
 def followed(case: Case, model: Fitted) -> float:

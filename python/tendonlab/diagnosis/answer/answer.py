@@ -18,7 +18,7 @@ from tendonlab.diagnosis.answer.inverse import inverse_dynamics
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, decide
-from tendonlab.diagnosis.discrepancy import followed
+from tendonlab.diagnosis.discrepancy import followed, scattered
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
@@ -78,7 +78,7 @@ def answer(
             *notes.warnings(case, floor, search),
             *notes.not_asked(case, search, library),
             *notes.not_improved(held_out, search.selected),
-            *notes.no_noise(levels.trained, levels.followed),
+            *notes.no_noise(levels),
         ),
         units=notes.units(case),
         overlays=overlays(case, stages, floor, judged),
@@ -102,6 +102,7 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
         repeated=floor.repeated,
         trained=search.tuned.over_scatter(len(case.scatter)) if doubtful else 1.0,
         followed=followed(case, search.tuned) if doubtful else 0.0,
+        scattered=scattered(case, search.tuned) if doubtful else 0.0,
     )
 
 

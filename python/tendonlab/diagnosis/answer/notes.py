@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED
-from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.answer.verdict import Levels
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -110,19 +111,25 @@ def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
     ]
 
 
-def no_noise(trained: float, followed: float) -> list[str]:
-    """A warning where what the refitted simulator leaves cannot be noise although nothing repeats; see `Levels`."""
+def no_noise(levels: Levels) -> list[str]:
+    """Warnings where what the refitted simulator leaves cannot be noise although nothing repeats."""
     found = []
-    if followed >= FOLLOWED:
+    if levels.followed >= FOLLOWED:
         found.append(
             "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "
-            "direction and time since the start, learnt from other experiments, foretells "
-            f"{100 * followed:.0f} % of its mean square. So it is not noise."
+            "over direction and time since the start, learnt from other experiments, foretells "
+            f"{100 * levels.followed:.0f} % of its mean square. So it is not noise."
         )
-    if trained >= FAR_TRAINED:
+    if levels.trained >= FAR_TRAINED:
         found.append(
-            f"The remaining error is {trained**0.5:.2g} times as large as sensors and friction that differs by "
+            f"The remaining error is {levels.trained**0.5:.2g} times as large as sensors and friction that differs by "
             f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % from run to run leave. So it is not noise."
+        )
+    if levels.scattered >= FAR_SCATTERED:
+        found.append(
+            f"The fit needs friction that differs by {100 * RUN_TO_RUN_UNKNOWN * levels.scattered**0.5:.0f} % from run "
+            "to run. That is more than noise: look for what changed between the runs (temperature, lubrication, "
+            "pretension)."
         )
     return found
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab.diagnosis.discrepancy import FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.search.contest import MATTERS, Round
 from tendonlab.fitting.noise import NEAR_FLOOR
 
@@ -28,8 +28,8 @@ class Levels:
     decides where nothing repeats. `explained`: share of the held-out excess that the selected effects remove, None
     where there is none. `left`: plain, of the simulator with them on held-out experiments. `repeated`: whether the
     floor comes from repeats. Where none does and nothing was selected, `trained`: of the refitted simulator on the
-    training experiments, in units of what run-to-run friction may leave, and `followed`: the share of that which
-    follows the motion."""
+    training experiments, in units of what run-to-run friction may leave, `followed`: the share of that which
+    follows the motion or drifts, and `scattered`: by how much friction differs from run to run."""
 
     nominal: float
     tuned: float
@@ -39,6 +39,7 @@ class Levels:
     repeated: bool
     trained: float = 1.0
     followed: float = 0.0
+    scattered: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
 
 def _room(levels: Levels) -> float:
     """By how much an error may be noise where nothing repeats; below 0 it is none."""
-    return min(SOFT, FAR - levels.refitted, FAR_TRAINED - levels.trained, FOLLOWED - levels.followed)
+    far = (FAR - levels.refitted, FAR_TRAINED - levels.trained, FAR_SCATTERED - levels.scattered)
+    return min(SOFT, *far, FOLLOWED - levels.followed)
 
 
 def _step(x: float) -> float:
