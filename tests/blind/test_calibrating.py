@@ -10,6 +10,7 @@ import pytest
 from tendonlab.blind.calibrating import Judged, calibrate, fitted, results_on
 from tendonlab.blind.reliability import calibration_error, error_beyond_chance, reliability_line, too_far_off
 from tendonlab.diagnosis.answer.calibration import Calibration
+from tendonlab.diagnosis.answer.verdict import Verdict
 
 VERDICTS = ("data_fault", "no_gap", "parameters_only", "effect", "unknown_effect")
 
@@ -89,3 +90,27 @@ def test_a_missing_report_is_named(tmp_path: Path) -> None:
     (tmp_path / "case-001.toml").write_text("", encoding="utf-8")
     with pytest.raises(ValueError, match=r"case-001/report.json is missing: expected a report of every case"):
         calibrate([(tmp_path, tmp_path)])
+
+
+def test_a_group_keeps_its_shares_and_the_probability_of_the_group() -> None:
+    of = Calibration(slope=0.5, shift=-1.0)
+    raw = Verdict("effect", dict.fromkeys(VERDICTS, 0.2), {"a:b": 0.6, "c:d": 0.3, "e:f": 0.05}, [], [["a:b", "c:d"]])
+    found = of.applied(raw).effects
+    assert found["a:b"] + found["c:d"] == pytest.approx(of.effect(0.9))
+    assert found["a:b"] / found["c:d"] == pytest.approx(2.0)
+    assert found["e:f"] == pytest.approx(of.effect(0.05))
+
+
+def test_sets_share_the_probability_of_all_of_them() -> None:
+    sets = [{"effects": ["a:b"], "probability": 0.7}, {"effects": ["c:d"], "probability": 0.2}]
+    raw = Verdict("effect", dict.fromkeys(VERDICTS, 0.2), {}, sets, [])
+    found = [entry["probability"] for entry in Calibration(slope=0.5).applied(raw).sets]
+    assert sum(found) == pytest.approx(Calibration(slope=0.5).effect(0.9))
+    assert found[0] / found[1] == pytest.approx(3.5)
+
+
+def test_without_evidence_only_a_fault_of_the_data_is_impossible() -> None:
+    raw = {"data_fault": 0.0, "no_gap": 0.0, "parameters_only": 1.0, "effect": 0.0, "unknown_effect": 0.0}
+    found = Calibration(lapse=0.2).verdicts(raw)
+    assert found["data_fault"] == 0.0
+    assert found["effect"] == pytest.approx(0.05, abs=1e-5)

@@ -22,8 +22,8 @@ class Calibration:
     """How evidence becomes probability, with or without repeats.
 
     Verdicts: p^(1/`temperature`), normalised, and a share `lapse` spread over all of them: what goes wrong however
-    clear the evidence is. The most probable verdict stays. Effects and sets of effects: log odds times `slope` plus
-    `shift`, which keeps their order. `systems`: kinds of rigs on which cases of their own confirmed the map."""
+    clear the evidence is. The most probable verdict stays. Effects, groups of effects and sets: log odds times
+    `slope` plus `shift`, which keeps their order. `systems`: kinds of rigs on which other cases confirmed the map."""
 
     temperature: float = 1.0
     lapse: float = 0.0
@@ -32,8 +32,8 @@ class Calibration:
     systems: tuple[str, ...] = ()
 
     def verdicts(self, raw: Mapping[str, float]) -> dict[str, float]:
-        """Probabilities of the verdicts; one that is impossible stays so."""
-        able = {name: p for name, p in raw.items() if p > 0.0}
+        """Probabilities of the verdicts; what the check of the logs has excluded stays so."""
+        able = {name: p for name, p in raw.items() if p > 0.0 or name != "data_fault"}
         sharp = {name: max(p, LEAST) ** (1.0 / self.temperature) for name, p in able.items()}
         total = sum(sharp.values())
         mixed = {name: (1.0 - self.lapse) * p / total + self.lapse / len(sharp) for name, p in sharp.items()}
@@ -45,10 +45,19 @@ class Calibration:
         return float(1.0 / (1.0 + np.exp(-(self.slope * np.log(p / (1.0 - p)) + self.shift))))
 
     def applied(self, verdict: Verdict) -> Verdict:
-        """The same answer with calibrated probabilities."""
-        sets = [{**entry, "probability": self.effect(float(entry["probability"]))} for entry in verdict.sets]
+        """The same answer with calibrated probabilities. Effects that the data cannot tell apart share that of their
+        group, and sets share that of all of them."""
         effects = {name: self.effect(p) for name, p in verdict.effects.items()}
+        for group in verdict.indistinguishable:
+            effects |= self._shared({name: verdict.effects[name] for name in group})
+        shares = self._shared({str(k): float(entry["probability"]) for k, entry in enumerate(verdict.sets)})
+        sets = [{**entry, "probability": p} for entry, p in zip(verdict.sets, shares.values(), strict=True)]
         return replace(verdict, probability=self.verdicts(verdict.probability), effects=effects, sets=sets)
+
+    def _shared(self, raw: Mapping[str, float]) -> dict[str, float]:
+        total = sum(raw.values())
+        factor = self.effect(min(total, 1.0)) / total if total > 0.0 else 1.0
+        return {name: factor * p for name, p in raw.items()}
 
 
 @cache
