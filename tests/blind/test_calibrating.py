@@ -29,7 +29,7 @@ def cases(count: int, *, sharpness: float, lapse: float = 0.0) -> list[Judged]:
         odds = sharpness * np.log(chance / (1.0 - chance))
         effects = {"a:b": float(1.0 / (1.0 + np.exp(-odds)))}
         told = max(evidence, key=evidence.__getitem__)
-        made.append(Judged("rigid_joint", False, came, there, evidence, effects, told))
+        made.append(Judged("rigid_joint", False, came, there, evidence, effects, told, runs=7))
     return made
 
 
@@ -67,6 +67,13 @@ def test_the_most_probable_verdict_and_the_order_of_effects_stay() -> None:
     assert mapped["data_fault"] == 0.0
     effects = [of.effect(p) for p in (0.0, 0.1, 0.5, 0.9, 1.0)]
     assert effects == sorted(effects)
+
+
+def test_the_map_holds_on_the_rigs_that_confirmed_it() -> None:
+    of = Calibration(systems=("rigid_joint",), least_runs=7)
+    assert of.holds("rigid_joint", runs=7)
+    assert not of.holds("rigid_joint", runs=6)
+    assert not of.holds("ccsrm", runs=10)
 
 
 def test_no_map_changes_nothing() -> None:

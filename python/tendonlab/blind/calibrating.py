@@ -26,7 +26,8 @@ Folders = Sequence[tuple[Path, Path]]  # truths and reports
 
 @dataclass(frozen=True)
 class Judged:
-    """A diagnosed case: the true verdict, effects that count as right, and the evidence of the report."""
+    """A diagnosed case: the true verdict, effects that count as right, the evidence of the report, the verdict that was
+    told, and the number of training runs."""
 
     system: str
     repeats: bool
@@ -35,6 +36,7 @@ class Judged:
     verdicts: dict[str, float]
     effects: dict[str, float]
     told: str
+    runs: int
 
     def events(self) -> list[tuple[float, bool]]:
         """Evidence of the right effects, together, and of each other one, and whether they are there."""
@@ -68,6 +70,7 @@ def _judged(sealed: Path, reports: Path) -> Iterable[Judged]:
             verdicts=evidence["verdict"],
             effects=evidence["effects"],
             told=found["verdict"],
+            runs=len(found["split"]["train"]),
         )
 
 
@@ -137,9 +140,10 @@ def _one_map(cases: Sequence[Judged], tests: Sequence[Judged]) -> dict[str, Any]
     found = fitted(cases) if cases else Calibration()
     results = {kind: results_on(of, found) for kind, of in _by_system(tests).items()}
     return {
-        "map": {name: value for name, value in asdict(found).items() if name != "systems"},
+        "map": {name: value for name, value in asdict(found).items() if name not in ("systems", "least_runs")},
         "fitted on": {kind: len(of) for kind, of in _by_system(cases).items()},
         "tested on": {kind: {name: _rounded(x) for name, x in result.items()} for kind, result in results.items()},
+        "least runs": min((case.runs for case in tests), default=0),
         "confirmed": [kind for kind, of in results.items() if of["cases"] >= LEAST_CASES and abs(of["z"]) < FALSE],
     }
 

@@ -54,7 +54,7 @@ def answer(
         seed=seed,
         verdict=verdict.verdict,
         verdict_probability=verdict.probability,
-        calibrated=case.system.kind in calibration.systems,
+        calibrated=calibration.holds(case.system.kind, runs=len(case.train)),
         replay=notes.replay(case),
         gap=_gap(case, stages, floor),
         where={

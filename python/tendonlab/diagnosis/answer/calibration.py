@@ -23,13 +23,19 @@ class Calibration:
 
     Verdicts: p^(1/`temperature`), normalised, and a share `lapse` spread over all of them: what goes wrong however
     clear the evidence is. The most probable verdict stays. Effects, groups of effects and sets: log odds times
-    `slope` plus `shift`, which keeps their order. `systems`: kinds of rigs on which other cases confirmed the map."""
+    `slope` plus `shift`, which keeps their order. `systems`: kinds of rigs on which other cases confirmed the map,
+    with at least `least_runs` training experiments each."""
 
     temperature: float = 1.0
     lapse: float = 0.0
     slope: float = 1.0
     shift: float = 0.0
     systems: tuple[str, ...] = ()
+    least_runs: int = 0
+
+    def holds(self, system: str, *, runs: int) -> bool:
+        """Whether the map was confirmed on rigs of this kind with as few training experiments."""
+        return system in self.systems and runs >= self.least_runs
 
     def verdicts(self, raw: Mapping[str, float]) -> dict[str, float]:
         """Probabilities of the verdicts; what the check of the logs has excluded stays so."""
@@ -67,4 +73,4 @@ def shipped(*, repeats: bool) -> Calibration:
     if not path.is_file():
         return Calibration()
     given = json.loads(path.read_text(encoding="utf-8"))["with repeats" if repeats else "without repeats"]
-    return Calibration(**{**given["map"], "systems": tuple(given["confirmed"])})
+    return Calibration(**given["map"], systems=tuple(given["confirmed"]), least_runs=given["least runs"])
