@@ -163,8 +163,7 @@ class Simulation {
   void aim(const Crossing& first, double length, Trajectory& trajectory) {
     ++trajectory.rejected;
     retakes = true;
-    const bool now =
-        first.stale ? first.past || length < 1e4 * resolved() : first.share * length < resolved();
+    const bool now = first.stale ? first.past || length < 1e4 * resolved() : first.share * length < resolved();
     if (now && first.stale && first.mode < System::directions)
       choose_again(first);
     else if (now)
