@@ -161,6 +161,26 @@ def test_a_rival_takes_the_place_and_not_the_companions(trial: Callable[..., Tri
     assert place.round.probability == contest.probability
 
 
+@pytest.mark.parametrize(("gain", "is_new"), [(90.0, False), (3.0, True)])
+def test_a_place_is_contested_anew_where_the_others_had_ended_in_a_wrong_optimum(
+    gain: float, is_new: bool, trial: Callable[..., Trial], nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The others, started where they ended with the effect, do without it nearly as well: its contest meant nothing."""
+    monkeypatch.setattr(rivals, "_without", lambda *args: nominal)
+    monkeypatch.setattr(rivals.Trial, "of", classmethod(lambda cls, effect, *models: trial(effect, gain)))
+    shop: Any = SimpleNamespace(screen_all=lambda *args: [], refit_all=lambda *args, incumbent, **kw: [incumbent])
+    both = replace(nominal, added=(STRIBECK, DELAY))
+    contest = Round.of(nominal, (), [], established=set(), bar=DETECT, accepted=None)
+    old = [
+        Place(replace(nominal, added=(o,)), trial(e, 100.0), contest) for o, e in ((DELAY, STRIBECK), (STRIBECK, DELAY))
+    ]
+    fitter: Any = None
+    found = rivals.contest_each_place(fitter, both, {place.key: place for place in old}, shop)
+    assert [place.holder.effect for place in found] == [STRIBECK, DELAY]
+    assert all((place not in old) == is_new for place in found)
+    assert all((place.holder.evidence_gain == gain) == is_new for place in found)
+
+
 def test_dropping_an_effect_keeps_the_values_of_all_else(fitter: Fitter, nominal: Fitted) -> None:
     stribeck = {"joint_static_excess": 0.1, "joint_stribeck_velocity": 0.07}
     system = nominal.system.with_effects({STRIBECK: stribeck, "actuation:offset": {"actuation_offset": 0.02}})

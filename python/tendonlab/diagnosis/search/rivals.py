@@ -20,6 +20,7 @@ from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.system import System
 
 NUM_RIVALS, MAX_EFFECTS = 3, 3
+KEPT = 0.5  # share of its gain that an effect keeps over the others fitted anew, where its contest still holds
 
 
 @dataclass(frozen=True)
@@ -65,14 +66,14 @@ def largest_gain(places: Places) -> float:
 
 
 def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Workshop) -> list[Place]:
-    """The place of each effect of `base`: the stored contest for this effect if its companions are the same, else a new
-    one; the latest stored contest if the model cannot run without the effect."""
+    """The place of each effect of `base`: the stored contest for this effect if its companions are the same and do no
+    better now, else a new one; the latest stored contest if the model cannot run without the effect."""
     contested = []
     for effect in base.added:
         place = places.get((frozenset(base.added) - {effect}, effect))
-        if place is None:
+        if place is None or len(base.added) > 1:
             try:
-                place = _contest(fitter, base, effect, shop)
+                place = _contest(fitter, base, effect, shop, place)
             except (NumericalError, ParameterError):
                 stored = [stored for key, stored in places.items() if key[1] == effect]
                 if not stored:
@@ -82,10 +83,14 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
     return contested
 
 
-def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place:
+def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: Place | None) -> Place:
+    """The contest for one place, or the `stored` one, unless the other effects had ended in a wrong optimum: then they
+    do without this effect nearly as well, once they start where they ended with it."""
     rest = tuple(name for name in base.added if name != effect)
-    others = fitter.settled(fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial))
+    others = _without(fitter, base, effect, rest)
     holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
+    if stored is not None and holder.evidence_gain > KEPT * stored.holder.evidence_gain:
+        return stored
     label = f"instead of {effect}"
     screened = [] if others.exploded else shop.screen_all(fitter, others, label)  # nothing follows from such slopes
     promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
@@ -98,6 +103,10 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop) -> Place
     established = {t.effect for t in trials if establishes(t)}
     round_ = Round.of(others, screened, trials, established=established, bar=DETECT, accepted=holder)
     return Place(others, holder, round_)
+
+
+def _without(fitter: Fitter, base: Fitted, effect: str, rest: tuple[str, ...]) -> Fitted:
+    return fitter.settled(fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial))
 
 
 def improve(
