@@ -12,14 +12,18 @@ from tendonlab.fitting.case import Case, fine_enough
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
 from tendonlab.fitting.noise import white
-from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.problem import Fitter, pose
+from tendonlab.fitting.starts import cooled
 
 ROUGH, NEARLY = 8, 1e-4  # iterations and tolerance of the fit under white noise, of which only the residuals are used
 
 
 def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
-    """A fit under the sensors' white noise alone, before the floor is known."""
-    return Fitter(case, white(case.noise), cancel).fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
+    """A fit under the sensors' white noise alone, before the floor is known. Where that drives a parameter to a bound,
+    under noise as large as the misfit: so little noise believes a wrong model against all that is stated."""
+    fitter = Fitter(case, white(case.noise), cancel)
+    fit = fitter.fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
+    return cooled(pose(case, fitter.floor, case.system), cancel).linearise() if any(fit.at_bound) else fit
 
 
 def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> Fitter:
