@@ -9,7 +9,7 @@ import pytest
 
 from tendonlab.blind.calibrating import Judged, calibrate, fitted, results_on
 from tendonlab.blind.reliability import calibration_error, error_beyond_chance, reliability_line, too_far_off
-from tendonlab.diagnosis.answer.calibration import Calibration
+from tendonlab.diagnosis.answer.calibration import Calibration, Tempering, shipped
 from tendonlab.diagnosis.answer.verdict import Verdict
 
 VERDICTS = ("data_fault", "no_gap", "parameters_only", "effect", "unknown_effect")
@@ -36,37 +36,44 @@ def cases(count: int, *, sharpness: float, lapse: float = 0.0) -> list[Judged]:
 @pytest.mark.parametrize("sharpness", [0.5, 1.0, 3.0])
 def test_the_map_undoes_evidence_that_is_too_sure_or_not_sure_enough(sharpness: float) -> None:
     found = fitted(cases(1500, sharpness=sharpness))
-    assert found.temperature == pytest.approx(sharpness, rel=0.15)
-    assert found.slope == pytest.approx(1.0 / sharpness, rel=0.15)
-    assert found.shift == pytest.approx(0.0, abs=0.15)
-    assert found.lapse < 0.05
+    for of in (found.verdicts, found.effects):
+        assert of.temperature == pytest.approx(sharpness, rel=0.15)
+        assert of.lapse < 0.05
 
 
 def test_probabilities_are_true_under_the_fitted_map_on_other_cases() -> None:
     drawn = cases(2400, sharpness=3.0)
     before, after = results_on(drawn[1200:], Calibration()), results_on(drawn[1200:], fitted(drawn[:1200]))
-    assert abs(before["z"]) > 5.0
-    assert abs(after["z"]) < 2.5
-    assert before["calibration error beyond chance"] > 0.05
-    assert after["calibration error beyond chance"] < 0.02
-    assert before["reliability slope"] < 0.5
-    assert after["reliability slope"] == pytest.approx(1.0, abs=0.2)
+    for of in ("verdicts", "effects"):
+        assert abs(before[of]["z"]) > 5.0
+        assert abs(after[of]["z"]) < 2.5
+        assert before[of]["calibration error beyond chance"] > 0.05
+        assert after[of]["calibration error beyond chance"] < 0.02
+        assert before[of]["reliability slope"] < 0.5
+        assert after[of]["reliability slope"] == pytest.approx(1.0, abs=0.2)
 
 
 def test_a_share_of_cases_that_nothing_foretells_is_a_lapse() -> None:
-    found = fitted(cases(3000, sharpness=1.0, lapse=0.2))
-    assert found.lapse == pytest.approx(0.2, abs=0.06)
+    assert fitted(cases(3000, sharpness=1.0, lapse=0.2)).verdicts.lapse == pytest.approx(0.2, abs=0.06)
 
 
 def test_the_most_probable_verdict_and_the_order_of_effects_stay() -> None:
-    of = Calibration(temperature=4.0, lapse=0.3, slope=0.3, shift=-0.5)
+    of = Calibration(verdicts=Tempering(temperature=4.0, lapse=0.3), effects=Tempering(temperature=0.5, lapse=0.2))
     raw = {"data_fault": 0.0, "no_gap": 1e-20, "parameters_only": 0.3, "effect": 0.4, "unknown_effect": 0.3}
-    mapped = of.verdicts(raw)
+    mapped = of.of_verdicts(raw)
     assert sum(mapped.values()) == pytest.approx(1.0)
     assert max(mapped, key=mapped.__getitem__) == "effect"
     assert mapped["data_fault"] == 0.0
-    effects = [of.effect(p) for p in (0.0, 0.1, 0.5, 0.9, 1.0)]
+    effects = [of.effects.of_one(p) for p in (0.0, 0.1, 0.5, 0.9, 1.0)]
     assert effects == sorted(effects)
+
+
+def test_an_effect_that_is_nearly_sure_stays_so_but_for_the_lapse() -> None:
+    """Between sure and unsure there are few cases to fit: the map must not fall there."""
+    of = Tempering(temperature=0.7, lapse=0.1)
+    assert of.of_one(1.0) == pytest.approx(0.9, abs=1e-6)
+    assert of.of_one(0.9) > 0.85
+    assert of.of_one(0.5) == pytest.approx(0.45)
 
 
 def test_the_map_holds_on_the_rigs_that_confirmed_it() -> None:
@@ -77,9 +84,16 @@ def test_the_map_holds_on_the_rigs_that_confirmed_it() -> None:
 
 
 def test_no_map_changes_nothing() -> None:
-    raw = dict.fromkeys(VERDICTS, 0.2)
-    assert Calibration().verdicts(raw) == pytest.approx(raw)
-    assert Calibration().effect(0.37) == pytest.approx(0.37)
+    raw = {**dict.fromkeys(VERDICTS, 0.25), "data_fault": 0.0}
+    assert Calibration().of_verdicts(raw) == pytest.approx(raw)
+    assert Tempering().of_one(0.37) == pytest.approx(0.37)
+
+
+def test_the_shipped_map_is_read() -> None:
+    for repeats in (False, True):
+        of = shipped(repeats=repeats)
+        assert 0.0 <= of.verdicts.lapse < 0.5
+        assert of.holds("rigid_joint", runs=of.least_runs) == ("rigid_joint" in of.systems)
 
 
 def test_true_probabilities_pass_and_false_ones_do_not() -> None:
@@ -100,24 +114,25 @@ def test_a_missing_report_is_named(tmp_path: Path) -> None:
 
 
 def test_a_group_keeps_its_shares_and_the_probability_of_the_group() -> None:
-    of = Calibration(slope=0.5, shift=-1.0)
+    of = Calibration(effects=Tempering(temperature=2.0, lapse=0.1))
     raw = Verdict("effect", dict.fromkeys(VERDICTS, 0.2), {"a:b": 0.6, "c:d": 0.3, "e:f": 0.05}, [], [["a:b", "c:d"]])
     found = of.applied(raw).effects
-    assert found["a:b"] + found["c:d"] == pytest.approx(of.effect(0.9))
+    assert found["a:b"] + found["c:d"] == pytest.approx(of.effects.of_one(0.9))
     assert found["a:b"] / found["c:d"] == pytest.approx(2.0)
-    assert found["e:f"] == pytest.approx(of.effect(0.05))
+    assert found["e:f"] == pytest.approx(of.effects.of_one(0.05))
 
 
 def test_sets_share_the_probability_of_all_of_them() -> None:
     sets = [{"effects": ["a:b"], "probability": 0.7}, {"effects": ["c:d"], "probability": 0.2}]
     raw = Verdict("effect", dict.fromkeys(VERDICTS, 0.2), {}, sets, [])
-    found = [entry["probability"] for entry in Calibration(slope=0.5).applied(raw).sets]
-    assert sum(found) == pytest.approx(Calibration(slope=0.5).effect(0.9))
+    of = Calibration(effects=Tempering(temperature=2.0))
+    found = [entry["probability"] for entry in of.applied(raw).sets]
+    assert sum(found) == pytest.approx(of.effects.of_one(0.9))
     assert found[0] / found[1] == pytest.approx(3.5)
 
 
 def test_without_evidence_only_a_fault_of_the_data_is_impossible() -> None:
     raw = {"data_fault": 0.0, "no_gap": 0.0, "parameters_only": 1.0, "effect": 0.0, "unknown_effect": 0.0}
-    found = Calibration(lapse=0.2).verdicts(raw)
+    found = Calibration(verdicts=Tempering(lapse=0.2)).of_verdicts(raw)
     assert found["data_fault"] == 0.0
     assert found["effect"] == pytest.approx(0.05, abs=1e-5)

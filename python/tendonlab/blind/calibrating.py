@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.special import expit, logit
+from scipy.special import expit
 
-from tendonlab.diagnosis.answer.calibration import FORMAT, LEAST, Calibration
+from tendonlab.diagnosis.answer.calibration import FORMAT, LEAST, Calibration, Tempering
 from tendonlab.version import version
 
 from .reliability import Array, error_beyond_chance, reliability_line, too_far_off
@@ -21,6 +22,7 @@ from .runner import REPORT
 
 LEAST_CASES = 20  # of a kind of rig, to confirm the map there
 FALSE = 1.96  # Spiegelhalter's z beyond which probabilities are false
+USUAL, SPREAD = -2.2, 1.4  # log odds of twice the lapse that is believed before any case, 5 %, and their sd
 Folders = Sequence[tuple[Path, Path]]  # truths and reports
 
 
@@ -77,52 +79,61 @@ def _judged(sealed: Path, reports: Path) -> Iterable[Judged]:
 def fitted(cases: Sequence[Judged]) -> Calibration:
     """The map of most likelihood, held near no change by weak priors: a few cases change little."""
 
-    def verdict_cost(x: Array) -> float:
-        of = Calibration(temperature=float(np.exp(x[0])), lapse=float(0.5 * expit(x[1])))
-        surprise = -sum(np.log(max(of.verdicts(case.verdicts).get(case.verdict, 0.0), LEAST)) for case in cases)
-        return float(surprise + 0.5 * x[0] ** 2 + 0.125 * (x[1] + 3.0) ** 2)
+    def of_verdicts(by: Tempering) -> float:
+        of = Calibration(verdicts=by)
+        return -sum(math.log(max(of.of_verdicts(case.verdicts)[case.verdict], LEAST)) for case in cases)
 
     events = [event for case in cases for event in case.events()]
-    stated = logit(np.clip([p for p, _ in events], LEAST, 1.0 - LEAST))
-    there = np.array([hit for _, hit in events])
 
-    def effect_cost(x: Array) -> float:
-        odds = np.exp(x[0]) * stated + x[1]
-        surprise = np.sum(np.logaddexp(0.0, np.where(there, -odds, odds)))
-        return float(surprise + 0.5 * (x[0] ** 2 + x[1] ** 2))
+    def of_effects(by: Tempering) -> float:
+        return -sum(math.log(max(p if there else 1.0 - p, LEAST)) for p, there in _tempered(events, by))
 
-    temperature, lapse = minimize(verdict_cost, np.array([0.0, -3.0]), method="Nelder-Mead").x
-    slope, shift = minimize(effect_cost, np.zeros(2), method="Nelder-Mead").x
-    return Calibration(
-        temperature=_rounded(np.exp(temperature)),
-        lapse=_rounded(0.5 * expit(lapse)),
-        slope=_rounded(np.exp(slope)),
-        shift=_rounded(shift),
-    )
+    return Calibration(verdicts=_best(of_verdicts), effects=_best(of_effects))
+
+
+def _tempered(events: Iterable[tuple[float, bool]], by: Tempering) -> list[tuple[float, bool]]:
+    return [(by.of_one(p), there) for p, there in events]
+
+
+def _best(surprise: Callable[[Tempering], float]) -> Tempering:
+    """The tempering of least surprise; priors: temperature 1 within a factor of e, lapse 5 % within a factor of 4."""
+
+    def tempering(x: Array) -> Tempering:
+        return Tempering(temperature=float(np.exp(x[0])), lapse=float(0.5 * expit(x[1])))
+
+    def cost(x: Array) -> float:
+        return surprise(tempering(x)) + 0.5 * float(x[0] ** 2 + ((x[1] - USUAL) / SPREAD) ** 2)
+
+    start = np.array([0.0, USUAL])
+    simplex = start + np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]])
+    best = tempering(minimize(cost, start, method="Nelder-Mead", options={"initial_simplex": simplex}).x)
+    return Tempering(temperature=_rounded(best.temperature), lapse=_rounded(best.lapse))
 
 
 def _rounded(value: float) -> float:
     return float(f"{value:.4g}")
 
 
-def stated(cases: Sequence[Judged], of: Calibration) -> tuple[Array, Array]:
-    """Under a map: the probability of every verdict that was told, and whether the verdict is right."""
-    probability = np.array([of.verdicts(case.verdicts)[case.told] for case in cases])
-    return probability, np.array([float(case.told == case.verdict) for case in cases])
-
-
-def results_on(cases: Sequence[Judged], of: Calibration) -> dict[str, float]:
-    """How true the probabilities of the verdicts are on these cases."""
-    probability, came_true = stated(cases, of)
+def _truth_of(stated: Iterable[tuple[float, bool]]) -> dict[str, float]:
+    """How true these probabilities are: how many came out, and how far off they are."""
+    probability, came_true = (np.array(column, dtype=float) for column in zip(*stated, strict=True))
     slope, _ = reliability_line(probability, came_true)
-    return {
-        "cases": len(cases),
-        "verdict right": float(came_true.mean()),
+    found = {
+        "number": float(probability.size),
+        "came true": float(came_true.mean()),
         "mean probability": float(probability.mean()),
         "calibration error beyond chance": error_beyond_chance(probability, came_true),
         "reliability slope": slope,
         "z": too_far_off(probability, came_true),
     }
+    return {name: _rounded(value) for name, value in found.items()}
+
+
+def results_on(cases: Sequence[Judged], of: Calibration) -> dict[str, dict[str, float]]:
+    """How true the probabilities of the verdicts that were told, and of all effects, are on these cases."""
+    verdicts = [(of.of_verdicts(case.verdicts)[case.told], case.told == case.verdict) for case in cases]
+    events = [event for case in cases for event in case.events()]
+    return {"verdicts": _truth_of(verdicts), "effects": _truth_of(_tempered(events, of.effects))}
 
 
 def calibrate(on: Folders, test: Folders = ()) -> dict[str, Any]:
@@ -140,12 +151,16 @@ def _one_map(cases: Sequence[Judged], tests: Sequence[Judged]) -> dict[str, Any]
     found = fitted(cases) if cases else Calibration()
     results = {kind: results_on(of, found) for kind, of in _by_system(tests).items()}
     return {
-        "map": {name: value for name, value in asdict(found).items() if name not in ("systems", "least_runs")},
+        "map": {"verdicts": asdict(found.verdicts), "effects": asdict(found.effects)},
         "fitted on": {kind: len(of) for kind, of in _by_system(cases).items()},
-        "tested on": {kind: {name: _rounded(x) for name, x in result.items()} for kind, result in results.items()},
+        "tested on": results,
         "least runs": min((case.runs for case in tests), default=0),
-        "confirmed": [kind for kind, of in results.items() if of["cases"] >= LEAST_CASES and abs(of["z"]) < FALSE],
+        "confirmed": [kind for kind, of in results.items() if _confirms(of)],
     }
+
+
+def _confirms(results: Mapping[str, Mapping[str, float]]) -> bool:
+    return results["verdicts"]["number"] >= LEAST_CASES and all(abs(of["z"]) < FALSE for of in results.values())
 
 
 def _by_system(cases: Sequence[Judged]) -> dict[str, list[Judged]]:
