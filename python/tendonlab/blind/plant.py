@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .description import Lanes, Run, Scene
 from .friction import Friction
-from .sensing import Reading
+from .sensing import Sensors
 from .unknown import Causes
 
 Array = NDArray[np.float64]
@@ -27,10 +27,7 @@ def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1)
     """
     if lanes.system.simulate is not None:
         return lanes.system.simulate(lanes, scene, step, stride)
-    num_steps = round(scene.sample_time / step)
-    if num_steps < 1 or abs(num_steps * step - scene.sample_time) > 1e-9:
-        raise ValueError(f"step = {step} s: expected a whole fraction of the sample time {scene.sample_time} s")
-    rows = list(_Plant(lanes, scene, num_steps).samples(stride))
+    rows = list(_Plant(lanes, scene, steps_per_sample(scene, step)).samples(stride))
     if not rows:
         raise ValueError(
             f"reference has {len(scene.reference)} samples: expected more than num_settle = {scene.num_settle}"
@@ -40,6 +37,14 @@ def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1)
         raise ArithmeticError(f"state is not finite: step {step} s is too long for these parameters")
     time: Array = np.arange(len(rows), dtype=float) * scene.sample_time * stride
     return Run(time=time, command=command, outputs=np.moveaxis(outputs, 1, 0), state=np.moveaxis(state, 1, 0))
+
+
+def steps_per_sample(scene: Scene, step: float) -> int:
+    """Number of steps of `step` s in a sample. Raises ValueError where that is no whole number."""
+    count = round(scene.sample_time / step)
+    if count < 1 or abs(count * step - scene.sample_time) > 1e-9:
+        raise ValueError(f"step = {step} s: expected a whole fraction of the sample time {scene.sample_time} s")
+    return count
 
 
 def beyond_deadband(torque: Array, deadband: Array, *, rounded: NDArray[np.bool_]) -> Array:
@@ -73,11 +78,7 @@ class _Plant:
         self.bristle = self.friction.bristle()
         self.plain_limit = self.kick * self.friction.coulomb * self.friction.scale
         self.plain_drag = self.friction.viscous * self.friction.scale
-        outputs = lanes.system.output_names
-        self.bias = np.stack([lanes.get(f"sensor.{name}_bias") for name in outputs])
-        delays = [lanes.get(f"sensor.{name}_delay") for name in outputs]
-        self.readings = [Reading(d, sample_time=scene.sample_time, num_steps=num_steps) for d in delays]
-        self.has_sensor_delay = any(reading.capture for reading in self.readings)
+        self.sensors = Sensors(lanes, scene, num_steps)
         self.causes = Causes(lanes, step=self.step, sample_time=scene.sample_time)
         self.is_plain = self.friction.is_plain and not self.causes.acts_on_joint
         self.deadband, self.rounded = drives * lanes.get("actuation_deadband"), lanes.form != 0
@@ -98,21 +99,11 @@ class _Plant:
         """
         error = np.zeros(self.q.shape[1])
         for k in range(len(self.scene.reference)):
-            measured = self._measure(k)
+            measured = self.sensors.read(k, self.mechanics.measure(self.q, self.v))
             command, error = self._command(k, measured[0], error)
             if k >= self.scene.num_settle and (k - self.scene.num_settle) % stride == 0:
                 yield command, measured, np.concatenate([self.q, self.v])
             self._advance(k, command)
-
-    def _measure(self, k: int) -> Array:
-        values = self.mechanics.measure(self.q, self.v)
-        measured = np.stack([r.read(y) for r, y in zip(self.readings, values, strict=True)]) + self.bias
-        if self.scene.noise is not None:
-            measured += self.scene.noise[:, k]
-        if self.scene.resolution is not None:
-            grid = np.where(self.scene.resolution > 0, self.scene.resolution, 1.0)
-            measured = np.where(self.scene.resolution > 0, np.round(measured / grid) * grid, measured)
-        return measured
 
     def _command(self, k: int, measured: Array, before: Array) -> tuple[Array, Array]:
         controller = self.scene.controller
@@ -172,7 +163,5 @@ class _Plant:
         size -= limit
         np.maximum(size, 0.0, out=size)
         self.v = np.copysign(size, force, out=size)
-        if self.has_sensor_delay:
-            values, changes = self.mechanics.within(self.q, old, self.v, push)
-            for reading, value, change in zip(self.readings, values, changes, strict=True):
-                reading.note(index, value, change)
+        if self.sensors.are_late:
+            self.sensors.note(index, *self.mechanics.within(self.q, old, self.v, push))

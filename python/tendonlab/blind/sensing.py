@@ -1,11 +1,44 @@
-"""Delayed sensors of many lanes."""
+"""Sensors of many lanes."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Iterable
 
-Array = NDArray[np.float64]
+import numpy as np
+
+from .description import Array, Lanes, Scene
+
+
+def as_logged(values: Array, noise: Array | None, resolution: Array | None) -> Array:
+    """Readings with noise, rounded to steps where these are not 0."""
+    if noise is not None:
+        values = values + noise
+    if resolution is not None:
+        grid = np.where(resolution > 0, resolution, 1.0)
+        values = np.where(resolution > 0, np.round(values / grid) * grid, values)
+    return np.asarray(values)
+
+
+class Sensors:
+    """The sensors of all lanes in the order of the system's outputs: late, biased, noisy, in steps."""
+
+    def __init__(self, lanes: Lanes, scene: Scene, num_steps: int) -> None:
+        names = lanes.system.output_names
+        self.scene, self.bias = scene, np.stack([lanes.get(f"sensor.{name}_bias") for name in names])
+        delays = [lanes.get(f"sensor.{name}_delay") for name in names]
+        self.readings = [Reading(delay, sample_time=scene.sample_time, num_steps=num_steps) for delay in delays]
+        self.are_late = any(reading.capture for reading in self.readings)
+
+    def read(self, k: int, values: Iterable[Array]) -> Array:
+        """Readings at sample k of what perfect sensors would read, (outputs, n)."""
+        late = np.stack([reading.read(value) for reading, value in zip(self.readings, values, strict=True)])
+        noise = None if self.scene.noise is None else self.scene.noise[:, k]
+        return as_logged(late + self.bias, noise, self.scene.resolution)
+
+    def note(self, index: int, values: Iterable[Array], changes: Iterable[Array]) -> None:
+        """What perfect sensors would read in the middle of step `index` of a sample, and the change over that step."""
+        for reading, value, change in zip(self.readings, values, changes, strict=True):
+            reading.note(index, value, change)
 
 
 class Reading:

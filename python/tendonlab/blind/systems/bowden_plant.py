@@ -17,6 +17,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from tendonlab.blind.description import Array, Lanes, Run, Scene
+from tendonlab.blind.sensing import as_logged
 from tendonlab.blind.unknown import bump, contact_age, dwell, fade, heating
 
 from .bowden_sheath import Bristles, Sheath
@@ -44,13 +45,8 @@ def _sensed(lanes: Lanes, scene: Scene, output: Array) -> Array:
     before, lane = np.floor(at).astype(int), np.arange(lanes.size)
     after = np.minimum(before + 1, len(output) - 1)
     read = output[before, lane] + (at - before) * (output[after, lane] - output[before, lane])
-    read = read + lanes.get("sensor.output_torque_bias")
-    if scene.noise is not None:
-        read = read + scene.noise[0]
-    if scene.resolution is not None:
-        grid = np.where(scene.resolution[0] > 0, scene.resolution[0], 1.0)
-        read = np.where(scene.resolution[0] > 0, np.round(read / grid) * grid, read)
-    return np.asarray(read)
+    noise, resolution = (None if of is None else of[0] for of in (scene.noise, scene.resolution))
+    return as_logged(read + lanes.get("sensor.output_torque_bias"), noise, resolution)
 
 
 class _Rig:

@@ -16,7 +16,8 @@ from scipy.interpolate import CubicSpline
 
 from tendonlab.blind.description import Array, Lanes, Run, Scene
 from tendonlab.blind.friction import Friction
-from tendonlab.blind.sensing import Reading
+from tendonlab.blind.plant import steps_per_sample
+from tendonlab.blind.sensing import Sensors
 
 from .ccsrm_cables import Cables, ElasticEnds
 
@@ -25,10 +26,7 @@ SECTIONS = ("tension_11", "tension_12", "tension_13", "tension_21", "tension_22"
 
 def simulate(lanes: Lanes, scene: Scene, step: float, stride: int) -> Run:
     """Run all lanes; `step` in s must divide the sample time (ValueError otherwise)."""
-    num_steps = round(scene.sample_time / step)
-    if num_steps < 1 or abs(num_steps * step - scene.sample_time) > 1e-9:
-        raise ValueError(f"step = {step} s: expected a whole fraction of the sample time {scene.sample_time} s")
-    rows = list(_Joint(lanes, scene, num_steps).samples(stride))
+    rows = list(_Joint(lanes, scene, steps_per_sample(scene, step)).samples(stride))
     outputs, state = (np.stack([row[i] for row in rows], axis=1) for i in range(2))
     if not np.all(np.isfinite(state)):
         raise ArithmeticError(f"state is not finite: step {step} s is too long for these parameters")
@@ -41,15 +39,11 @@ class _Joint:
         self.scene, self.num_steps, self.step = scene, num_steps, scene.sample_time / num_steps
         at = np.arange(len(scene.reference)) * scene.sample_time
         self.pieces: Array = CubicSpline(at, scene.reference).c  # (4, num_samples - 1, n), the highest power first
-        self.names = lanes.system.output_names
-        self.sections = [SECTIONS.index(name) for name in self.names[1:]]
+        self.sections = [SECTIONS.index(name) for name in lanes.system.output_names[1:]]
         self.kick, self.friction = self.step / lanes.get("joint_inertia"), _friction(lanes)
         self.bristle = self.friction.bristle()
         self.groups = _groups(lanes, self.step)
-        self.bias = np.stack([lanes.get(f"sensor.{name}_bias") for name in self.names])
-        delays = [lanes.get(f"sensor.{name}_delay") for name in self.names]
-        self.readings = [Reading(d, sample_time=scene.sample_time, num_steps=num_steps) for d in delays]
-        self.has_delay = any(reading.capture for reading in self.readings)
+        self.sensors = Sensors(lanes, scene, num_steps)
         start = np.stack([scene.reference[0], np.zeros(lanes.size)]) if scene.initial is None else scene.initial
         self.q, self.v = start[0].copy(), start[1].copy()
         tension = np.tile(lanes.get("pretension"), (len(SECTIONS), 1))
@@ -67,14 +61,7 @@ class _Joint:
 
     def _measure(self, k: int) -> Array:
         tension = self.tension + 0.5 * self.change
-        values = [self.q, *tension[self.sections]]
-        measured = np.stack([r.read(y) for r, y in zip(self.readings, values, strict=True)]) + self.bias
-        if self.scene.noise is not None:
-            measured += self.scene.noise[:, k]
-        if self.scene.resolution is not None:
-            grid = np.where(self.scene.resolution > 0, self.scene.resolution, 1.0)
-            measured = np.where(self.scene.resolution > 0, np.round(measured / grid) * grid, measured)
-        return measured
+        return self.sensors.read(k, [self.q, *tension[self.sections]])
 
     def _advance(self, k: int) -> None:
         a, b, c, d = self.pieces[:, k]
@@ -97,11 +84,9 @@ class _Joint:
             level = np.where(laws.bristled, 0.0, level)
         free = old + force
         self.v = np.copysign(np.maximum(np.abs(free) - self.kick * level[0], 0.0), free)
-        if self.has_delay:
-            values = [self.q, *tension[self.sections]]
+        if self.sensors.are_late:
             changes = [0.5 * self.step * (old + self.v), *self.change[self.sections]]
-            for reading, value, change in zip(self.readings, values, changes, strict=True):
-                reading.note(index, value, change)
+            self.sensors.note(index, [self.q, *tension[self.sections]], changes)
 
     def _pull(self, angle: Array, rate: Array) -> tuple[Array, Array]:
         """Tensions (6, n); torque of the cables on joint 1, and of their middle sections alone, N*m, (2, n)."""

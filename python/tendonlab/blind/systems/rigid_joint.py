@@ -10,11 +10,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tendonlab.blind.description import Array, Lanes, Mechanics, Output, Push, Scene, Slot, System
+from tendonlab.blind.description import Array, Lanes, Output, Scene, Slot, System
 from tendonlab.blind.excitation import session
 from tendonlab.blind.unknown import OF_JOINTS
 
+from . import single_joint
 from .effects import FRICTION, position_loop
+from .single_joint import SingleJoint
 
 OUTPUTS = (
     Output("joint_angle", "q", "rad", "%.7f", 5e-5, 2e-4, 0.99, 2 * np.pi / 131072),
@@ -26,13 +28,7 @@ TYPICAL = {
     "joint_viscous": 0.08,
     "joint_coulomb": 0.15,
 }
-CONSTANTS = ("load:offset", "actuation:offset", "joint:asymmetry", "sensor.joint_angle:bias")  # torque or angle
-DELAYS = ("actuation:delay", "sensor.joint_angle:delay", "sensor.joint_velocity:delay")
-RIVALS = {group: tuple(other for other in CONSTANTS if other != group) for group in CONSTANTS}
-RIVALS |= {group: tuple(other for other in DELAYS if other != group) for group in DELAYS}
-RIVALS |= {
-    "joint:stribeck": ("joint:presliding", "joint:load_dependence"),
-    "joint:presliding": ("joint:stribeck",),
+RIVALS = single_joint.RIVALS | {
     "joint:load_dependence": ("actuation:gain_error", "joint:stribeck"),
     "actuation:gain_error": ("joint:load_dependence",),
 }
@@ -47,24 +43,15 @@ def sizes(truth: Mapping[str, float]) -> dict[str, float]:
         "actuation:deadband": 0.3 * truth["joint_coulomb"],
         "sensor.joint_angle:bias": 0.02,
         "sensor.joint_velocity:bias": 0.02,
-    } | dict.fromkeys(DELAYS, 0.003)
+    } | dict.fromkeys(single_joint.DELAYS, 0.003)
 
 
-def twins(effect: str, outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Constant torques add up wherever they act; a late actuator moves like a late angle, if no speed was measured."""
-    pairs = [("actuation:offset", "load:offset")]
-    if "joint_velocity" not in outputs:
-        pairs.append(("actuation:delay", "sensor.joint_angle:delay"))
-    return tuple(other for pair in pairs if effect in pair for other in pair if other != effect)
-
-
-class RigidJoint(Mechanics):
+class RigidJoint(SingleJoint):
     """The bodies of n lanes: one row."""
 
     def __init__(self, lanes: Lanes, step: float) -> None:
-        self.lanes, self.step = lanes, step
+        super().__init__(lanes, step)
         self.inertia = lanes.get("joint_inertia")[None, :]
-        self.gravity, self.pull = lanes.get("gravity_torque"), lanes.get("load_offset")
 
     def rest(self, scene: Scene) -> Array:
         """Static equilibrium under the controller's first reference, frictionless; zeros without a controller."""
@@ -76,21 +63,6 @@ class RigidJoint(Mechanics):
             wanted = torque / (1.0 + lanes.get("actuation_gain_error"))
             state[0] = scene.reference[0] - lanes.get("sensor.joint_angle_bias") - wanted / scene.controller.kp
         return state
-
-    def push(self, q: Array, v: Array, drive: Array, known: Array | None) -> Push:
-        weight = self.gravity * np.sin(q[0]) - self.pull
-        if known is not None:
-            weight = weight - known
-        return Push((drive - weight)[None, :], drive, drive, v[0], weight)
-
-    def load(self, push: Push) -> Array:
-        return np.asarray(0.5 * (push.drive + push.weight))[None, :]
-
-    def measure(self, q: Array, v: Array) -> list[Array]:
-        return [q[0], v[0]]
-
-    def within(self, q: Array, old: Array, new: Array, push: Push) -> tuple[list[Array], list[Array]]:
-        return [q[0], 0.5 * (old[0] + new[0])], [self.step * 0.5 * (old[0] + new[0]), new[0] - old[0]]
 
 
 RIGID_JOINT = System(
@@ -110,7 +82,7 @@ RIGID_JOINT = System(
     contract={"joint_inertia": "inertia", "joint_coulomb": "coulomb", "joint_viscous": "viscous"},
     sizes=sizes,
     rivals=RIVALS,
-    twins=twins,
+    twins=single_joint.twins,
     causes=OF_JOINTS,
     loop=lambda truth, draw: position_loop(draw, inertia=truth["joint_inertia"], bandwidth=(12.0, 18.0), limit=8.0),
     session=session,

@@ -10,12 +10,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tendonlab.blind.description import Array, Experiment, Input, Lanes, Mechanics, Output, Push, Scene, Slot, System
+from tendonlab.blind.description import Array, Experiment, Input, Lanes, Output, Push, Scene, Slot, System
 from tendonlab.blind.excitation import session
 from tendonlab.blind.plant import beyond_deadband
 from tendonlab.blind.unknown import OF_JOINTS, fade, heating
 
+from . import single_joint
 from .effects import FRICTION
+from .single_joint import SingleJoint
 
 INPUTS = (
     Input("target_angle", "goal", "rad", "%.6f", True),
@@ -37,15 +39,6 @@ TYPICAL = {
     "joint_coulomb": 0.03,
 }
 ARM = 0.08  # m, from the axis to the payload
-CONSTANTS = ("load:offset", "actuation:offset", "joint:asymmetry", "sensor.joint_angle:bias")  # torque or angle
-DELAYS = ("actuation:delay", "sensor.joint_angle:delay", "sensor.joint_velocity:delay")
-RIVALS = {group: tuple(other for other in CONSTANTS if other != group) for group in CONSTANTS}
-RIVALS |= {group: tuple(other for other in DELAYS if other != group) for group in DELAYS}
-RIVALS |= {
-    "joint:stribeck": ("joint:presliding", "joint:load_dependence"),
-    "joint:presliding": ("joint:stribeck",),
-    "joint:load_dependence": ("joint:stribeck",),
-}
 
 
 def sizes(truth: Mapping[str, float]) -> dict[str, float]:
@@ -57,15 +50,7 @@ def sizes(truth: Mapping[str, float]) -> dict[str, float]:
         "actuation:deadband": 0.3 * truth["joint_coulomb"],
         "sensor.joint_angle:bias": 0.02,
         "sensor.joint_velocity:bias": 0.05,
-    } | dict.fromkeys(DELAYS, 0.005)
-
-
-def twins(effect: str, outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Constant torques add up wherever they act; a late servo moves like a late angle, if no speed was measured."""
-    pairs = [("actuation:offset", "load:offset")]
-    if "joint_velocity" not in outputs:
-        pairs.append(("actuation:delay", "sensor.joint_angle:delay"))
-    return tuple(other for pair in pairs if effect in pair for other in pair if other != effect)
+    } | dict.fromkeys(single_joint.DELAYS, 0.005)
 
 
 def servo_session(
@@ -82,13 +67,12 @@ def servo_session(
     return runs
 
 
-class ServoPendulum(Mechanics):
+class ServoPendulum(SingleJoint):
     """The bodies of n lanes: one row. `drive` is the target angle, rad."""
 
     def __init__(self, lanes: Lanes, step: float) -> None:
-        self.lanes, self.step = lanes, step
+        super().__init__(lanes, step)
         self.inertia = (lanes.get("joint_inertia") + lanes.get("armature"))[None, :]
-        self.gravity, self.pull = lanes.get("gravity_torque"), lanes.get("load_offset")
         self.constant, self.resistance = lanes.get("torque_constant"), lanes.get("resistance")
         self.gain, self.most = lanes.get("proportional_gain"), lanes.get("voltage_limit")
         self.strength, self.offset = 1.0 + lanes.get("actuation_gain_error"), lanes.get("actuation_offset")
@@ -120,19 +104,7 @@ class ServoPendulum(Mechanics):
         if self.weak.any():
             fresh, torque = torque, fade(torque, self.heat, share=self.weak)
             self.heat = heating(self.heat, fresh, usual=self.usual, time=self.fade_time, step=self.step)
-        weight = self.gravity * np.sin(q[0]) - self.pull
-        if known is not None:
-            weight = weight - known
-        return Push((torque - weight)[None, :], torque, torque, v[0], weight)
-
-    def load(self, push: Push) -> Array:
-        return np.asarray(0.5 * (push.drive + push.weight))[None, :]
-
-    def measure(self, q: Array, v: Array) -> list[Array]:
-        return [q[0], v[0]]
-
-    def within(self, q: Array, old: Array, new: Array, push: Push) -> tuple[list[Array], list[Array]]:
-        return [q[0], 0.5 * (old[0] + new[0])], [self.step * 0.5 * (old[0] + new[0]), new[0] - old[0]]
+        return super().push(q, v, torque, known)
 
 
 SERVO_PENDULUM = System(
@@ -153,8 +125,8 @@ SERVO_PENDULUM = System(
     exact=("armature", "proportional_gain", "voltage_limit"),
     contract={"joint_inertia": "inertia", "joint_coulomb": "coulomb", "joint_viscous": "viscous"},
     sizes=sizes,
-    rivals=RIVALS,
-    twins=twins,
+    rivals=single_joint.RIVALS,
+    twins=single_joint.twins,
     causes=OF_JOINTS,
     session=servo_session,
     sample_times=(0.01, 0.005),
