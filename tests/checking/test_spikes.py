@@ -30,6 +30,21 @@ def test_an_outlier_at_the_end_is_no_noise() -> None:
     assert np.flatnonzero(outliers(wrong)).tolist() == [976]
 
 
+def test_an_outlier_at_either_end_is_found() -> None:
+    """The path of the first two and the last two samples is known from one side only."""
+    for at in (0, 1, 998, 999):
+        wrong = CHIRP + NOISE
+        wrong[at] += 0.1
+        assert np.flatnonzero(outliers(wrong)).tolist() == [at]
+
+
+def test_noise_and_jumps_at_the_ends_are_none() -> None:
+    for seed in range(50):
+        assert not outliers(np.random.default_rng(seed).standard_normal(300)).any()
+    step = np.where(np.arange(300) < 3, 0.0, 1.0) + NOISE[:300]
+    assert not outliers(step).any()
+
+
 def test_smooth_motion_has_none() -> None:
     assert not outliers(CHIRP + NOISE).any()
 

@@ -19,6 +19,8 @@ RETURN = 0.2  # of a spike of an input, by which its neighbours may differ
 CORNER = 2.0  # times by how much the steps before and after a sample differ, within which it is a corner of the motion
 # Neighbours that tell the path, pass by pass: two outliers in a row, or with one sample between, hide one another.
 NEAR = ((1, 2), (2, 3), (1, 3), (1, 2))
+END = 5.0  # times by how much any other sample differs from its path, of one at either end
+FOURTH = 70.0**0.5  # sd of the fourth difference of noise of sd 1
 MOST = 0.03  # of a record: what is more frequent belongs to the signal
 
 
@@ -43,7 +45,8 @@ def outliers(values: np.ndarray) -> np.ndarray:
         if len(kept) < 3 * WINDOW:
             break
         filled = np.interp(np.arange(len(values)), kept, values[kept])
-        found[np.intersect1d(_off_the_path(filled, near, far), kept)] = True
+        off = np.concatenate([_off_the_path(filled, near, far), _off_at_the_ends(filled)])
+        found[np.intersect1d(off, kept)] = True
     return found if found.mean() <= MOST else np.zeros_like(found)
 
 
@@ -63,6 +66,20 @@ def _off_the_path(y: np.ndarray, near: int, far: int) -> np.ndarray:
     return np.asarray(at[away > allowed])
 
 
+def _off_at_the_ends(y: np.ndarray) -> np.ndarray:
+    """Which of the first two and the last two samples, whose path is known from one side only, are far from the cubic
+    through the next four: by more than noise, and far more than any other sample is from its own."""
+    away = np.abs(np.diff(y, 4))  # of each sample from the cubic through the next four
+    noise = max(1.4826 * float(np.median(away)), FOURTH * smallest_change(y))
+
+    def is_off(along: np.ndarray, place: int) -> bool:
+        others = float(np.max(along[place + 1 : -2]))  # the last two hold the samples at the other end
+        return bool(along[place] > max(DEVIATIONS * noise, END * others))
+
+    first = [place for place in (0, 1) if is_off(away, place)]
+    return np.array(first + [len(y) - 1 - place for place in (0, 1) if is_off(away[::-1], place)], dtype=int)
+
+
 def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
     """Which samples are far from the running median, more than the median itself bends."""
     from scipy.ndimage import maximum_filter1d, median_filter
@@ -76,7 +93,7 @@ def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
     away = np.abs(y - middle)
     noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="mirror"))
     # A sample of a motion faster than its noise is the median itself, and says nothing of the noise.
-    noise = np.fmax(noise, 1.4826 * float(np.median(np.abs(np.diff(y, 4)))) / np.sqrt(70.0))
+    noise = np.fmax(noise, 1.4826 * float(np.median(np.abs(np.diff(y, 4)))) / FOURTH)
     bends = np.abs(np.diff(middle, 2, prepend=middle[0], append=middle[-1]))
     allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * maximum_filter1d(bends, WINDOW)
     found[kept] = away > allowed
