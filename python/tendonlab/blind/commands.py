@@ -42,6 +42,8 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     text = "of the cases that lack an effect, share that lacks a second one, 0 to 1 (default 0)"
     drawing.add_argument("--pairs", type=float, default=0.0, metavar="SHARE", help=text)
     text = "least and largest gap/noise of an effect (default 1 6)"
+    text = "share of the cases whose logs have a mistake: a sign, a unit, a late run, a file twice, 0 to 1 (default 0)"
+    drawing.add_argument("--faults", type=float, default=0.0, metavar="SHARE", help=text)
     drawing.add_argument(
         "--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=("LEAST", "LARGEST"), help=text
     )
@@ -90,7 +92,8 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
-    options = {name: getattr(given, name) for name in ("sealed", "system", "repeats", "unknown_share", "pairs", "jobs")}
+    names = ("sealed", "system", "repeats", "unknown_share", "pairs", "faults", "jobs")
+    options = {name: getattr(given, name) for name in names}
     print(draw(given.seed, given.count, given.out, strengths=tuple(given.strengths), **options))
     return 0
 

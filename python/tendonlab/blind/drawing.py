@@ -12,6 +12,7 @@ import numpy as np
 from tqdm import tqdm
 
 from . import unknown
+from .faults import draw_fault
 from .pairs import paired, tuned
 from .planning import Wanted, plan
 from .rig import LACKING, Rig, draw_rig
@@ -33,6 +34,7 @@ def draw(
     repeats: float = 1.0,
     unknown_share: float = 0.0,
     pairs: float = 0.0,
+    faults: float = 0.0,
     strengths: tuple[float, float] = (1.0, 6.0),
     jobs: int = 2,
     num_samples: int | None = None,
@@ -45,7 +47,7 @@ def draw(
     `system`: a kind of `SYSTEMS`, or "mixed" for all of them.
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
     The share `unknown_share` lacks an effect that the library does not have either. Of those that lack an effect the
-    share `pairs` lacks a second one.
+    share `pairs` lacks a second one. The share `faults` of all cases has a mistake in its logs.
     The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`.
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
@@ -53,7 +55,14 @@ def draw(
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
     planned = plan(
-        seed, count, system=system, repeats=repeats, unknown_share=unknown_share, pairs=pairs, strengths=strengths
+        seed,
+        count,
+        system=system,
+        repeats=repeats,
+        unknown_share=unknown_share,
+        pairs=pairs,
+        faults=faults,
+        strengths=strengths,
     )
     wanted = list(enumerate(planned))
     _make_folders(cases, sealed)
@@ -89,6 +98,7 @@ def _draw_batch(
 ) -> int:
     settled: dict[int, tuple[Rig, list[Strength]]] = {}
     redrawn: dict[int, list[str]] = {index: [] for index, _ in batch}
+    wanted_of = dict(batch)
     open_cases = dict(batch)
     while open_cases:
         rigs = {
@@ -104,8 +114,9 @@ def _draw_batch(
     rigs, firsts = {i: rig for i, (rig, _) in settled.items()}, [strengths[0] for _, strengths in settled.values()]
     for (i, rig), run in zip(rigs.items(), record(list(rigs.values()), firsts, step=step), strict=True):
         name = f"case-{i + 1:03d}"
-        write_dataset(rig, run, cases / name, name=name, description=_description(rig))
-        text = sealed_toml(rig, *settled[i][1], redrawn=redrawn[i])
+        fault = draw_fault(rig, np.random.default_rng([seed, i + 1, 0, 2])) if wanted_of[i].has_fault else None
+        write_dataset(rig, run, cases / name, name=name, description=_description(rig), fault=fault)
+        text = sealed_toml(rig, *settled[i][1], redrawn=redrawn[i], fault=fault)
         (sealed / f"{name}.toml").write_text(text, encoding="utf-8")
     return len(batch)
 

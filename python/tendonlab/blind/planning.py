@@ -17,7 +17,8 @@ MIXED = "mixed"
 @dataclass(frozen=True, kw_only=True)
 class Wanted:
     """A case to draw: its system, kind, the effect that its simulator lacks ("" for none, "unknown:bump" for a cause
-    that the library lacks as well), whether it repeats an experiment, and whether it lacks a second effect.
+    that the library lacks as well), whether it repeats an experiment, whether it lacks a second effect, and whether
+    its logs have a mistake.
     """
 
     system: str
@@ -25,6 +26,7 @@ class Wanted:
     effect: str
     has_repeats: bool
     is_pair: bool = False
+    has_fault: bool = False
     strengths: tuple[float, float] = (1.0, 6.0)
 
 
@@ -36,18 +38,19 @@ def plan(
     repeats: float = 1.0,
     unknown_share: float = 0.0,
     pairs: float = 0.0,
+    faults: float = 0.0,
     strengths: tuple[float, float] = (1.0, 6.0),
 ) -> list[Wanted]:
     """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
 
-    `pairs`: share of the cases that lack an effect which lack a second one. The draw of the repeats changes nothing
-    else: the cases of a seed are the same with and without repeats. Raises ValueError if count < 1, if `repeats`,
-    `unknown_share` or `pairs` is no share, if `strengths` are no range, and for another
-    system.
+    `pairs`: share of the cases that lack an effect which lack a second one. `faults`: share of all cases whose logs
+    have a mistake. The draws of repeats and mistakes change nothing else: the rigs of a seed are the same with and
+    without. Raises ValueError if count < 1, if a share is none, if `strengths` are no range, and for another system.
     """
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
-    for name, share in (("repeats", repeats), ("unknown_share", unknown_share), ("pairs", pairs)):
+    shares = {"repeats": repeats, "unknown_share": unknown_share, "pairs": pairs, "faults": faults}
+    for name, share in shares.items():
         if not 0.0 <= share <= 1.0:
             raise ValueError(f"{name} = {share}: expected a share from 0 to 1")
     least, largest = strengths
@@ -55,14 +58,20 @@ def plan(
         raise ValueError(f"strengths = {least}, {largest}: expected two numbers, 0 < least < largest")
     if system not in (*SYSTEMS, MIXED):
         raise ValueError(f"system = {system!r}: expected one of {', '.join((*SYSTEMS, MIXED))}")
-    repeated = _some(seed, 1, count=count, share=repeats)
+    repeated, faulty = _some(seed, 1, count=count, share=repeats), _some(seed, 4, count=count, share=faults)
     kinds = _mixed_kinds if system == MIXED else partial(_kinds, system=system)
     drawn = kinds(seed, count, unknown_share=unknown_share)
     singles = [i for i, (_, kind, _) in enumerate(drawn) if kind == "effect"]
     paired = {singles[k] for k in _some(seed, 3, count=len(singles), share=pairs)}
     return [
         Wanted(
-            system=name, kind=kind, effect=effect, has_repeats=i in repeated, is_pair=i in paired, strengths=strengths
+            system=name,
+            kind=kind,
+            effect=effect,
+            has_repeats=i in repeated,
+            is_pair=i in paired,
+            has_fault=i in faulty,
+            strengths=strengths,
         )
         for i, (name, kind, effect) in enumerate(drawn)
     ]

@@ -17,6 +17,7 @@ from .runner import REPORT, VERDICTS, sha256
 BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
 SURE = 0.8  # probability above which a report names an effect with confidence
 PAIRS = ("pair_both", "pair_one", "pair_wrong")
+FAULTS = ("fault_kind", "fault_signal")
 HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
 
 
@@ -120,6 +121,9 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
         "shrinkage": 0.0 if failed else _shrinkage(report),
         "seconds": float(report.get("seconds", np.nan)),
     }
+    if truth["verdict"] == "data_fault":
+        return found | _fault(truth["fault"], report)
+    found["blocked"] = failed or report["verdict"] == "data_fault"
     right = {*truth["effects"], *truth.get("accept", [])}
     if len(truth["effects"]) > 1:
         return found | _pair(right, set(selected), report["verdict"])
@@ -145,6 +149,13 @@ def _pair(right: set[str], selected: set[str], verdict: str) -> dict[str, object
     return {"pair_both": count >= 2, "pair_one": count >= 1, "pair_wrong": bool(selected - right)}
 
 
+def _fault(fault: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+    """Something of the right kind blocks, and it names a signal, or the experiment, that is wrong."""
+    kind = [entry for entry in report.get("data", []) if entry["blocks"] and entry["problem"] == fault["problem"]]
+    named = {str(name) for entry in kind for name in (entry["signal"], entry["experiment"], *entry.get("or", []))}
+    return {"fault_kind": bool(kind), "fault_signal": bool(named & {*fault["signals"], fault["experiment"]})}
+
+
 def _part(name: str, index: int) -> str:
     return name.partition(":")[index]
 
@@ -155,7 +166,7 @@ def _shrinkage(report: Mapping[str, Any]) -> float:
 
 
 def _tables(cases: pd.DataFrame) -> Score:
-    for name in (*HITS, *PAIRS, "false_alarm", "unknown_hit", "unknown_named"):
+    for name in (*HITS, *PAIRS, *FAULTS, "blocked", "false_alarm", "unknown_hit", "unknown_named"):
         if name not in cases:
             cases[name] = np.nan
         cases[name] = cases[name].astype(float)
@@ -190,6 +201,9 @@ def _summary(cases: pd.DataFrame) -> dict[str, float]:
     summary |= {name.replace("_", " "): _mean(single[name]) for name in HITS if name != "verdict_hit"}
     if cases["pair_both"].notna().any():
         summary |= {name.replace("_", " "): _mean(cases[name]) for name in PAIRS}
+    if cases["fault_kind"].notna().any():
+        summary |= {name.replace("_", " "): _mean(cases[name]) for name in FAULTS}
+    summary["blocked without a fault"] = _mean(cases["blocked"])
     summary["verdict right"] = _mean(cases["verdict_hit"])
     for truth in ("no_gap", "parameters_only"):
         summary[f"false alarms on {truth}"] = _mean(cases.loc[cases["truth"] == truth, "false_alarm"])

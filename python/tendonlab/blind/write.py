@@ -10,7 +10,8 @@ from typing import TypeVar
 import numpy as np
 import pandas as pd
 
-from .description import Experiment, Run
+from .description import Array, Experiment, Run
+from .faults import TIME, Fault, spoiled
 from .lanes import alike, lanes_of, scene_of
 from .plant import simulate
 from .rig import LACKING, Rig, full_truth, nominal_effects, nominal_values
@@ -47,23 +48,32 @@ def _record(rigs: Sequence[Rig], amplitudes: Sequence[float], *, step: float) ->
     return runs
 
 
-def write_dataset(rig: Rig, run: Run, folder: Path, *, name: str, description: str) -> None:
-    """Write dataset.toml and one CSV an experiment; nothing of the truth. Raises FileExistsError where `folder` has
-    a dataset.
+def write_dataset(rig: Rig, run: Run, folder: Path, *, name: str, description: str, fault: Fault | None = None) -> None:
+    """Write dataset.toml and one CSV an experiment, with the mistake `fault` in the logs; nothing of the truth. Raises
+    FileExistsError where `folder` has a dataset.
     """
     if (folder / "dataset.toml").exists():
         raise FileExistsError(f"{folder} holds a dataset already: expected a new folder")
     folder.mkdir(parents=True, exist_ok=True)
-    signals = _signals(rig)
-    for lane, experiment in enumerate(rig.experiments):
-        values = {rig.system.reference: rig.motor_turns * experiment.reference, **experiment.others}
-        values |= {rig.system.inputs[0].name: run.command[:, lane]}
-        values |= {output.name: run.outputs[i, :, lane] for i, output in enumerate(rig.system.outputs)}
-        table = {"t": np.char.mod("%.3f", run.time)}
-        table |= {column: np.char.mod(digits, values[signal]) for signal, column, _, digits in signals}
-        pd.DataFrame(table).to_csv(folder / f"{experiment.name}.csv", index=False)
+    logs = {experiment.name: _log(rig, run, lane) for lane, experiment in enumerate(rig.experiments)}
+    if fault:
+        logs = spoiled(logs, fault, outputs=tuple(output.name for output in rig.system.outputs))
+    for experiment, log in logs.items():
+        table = {"t": np.char.mod("%.3f", log[TIME])}
+        for signal, column, _, digits in _signals(rig):
+            is_scaled = fault is not None and abs(fault.factor) != 1.0 and signal in fault.signals
+            table[column] = np.char.mod("%.9g" if is_scaled else digits, log[signal])
+        pd.DataFrame(table).to_csv(folder / f"{experiment}.csv", index=False)
     text = dataset_toml(rig, name=name, description=description)
     (folder / "dataset.toml").write_text(text, encoding="utf-8")
+
+
+def _log(rig: Rig, run: Run, lane: int) -> dict[str, Array]:
+    """Time and every signal of one experiment."""
+    experiment = rig.experiments[lane]
+    log = {rig.system.reference: rig.motor_turns * experiment.reference, **experiment.others}
+    log |= {TIME: run.time, rig.system.inputs[0].name: run.command[:, lane]}
+    return log | {output.name: run.outputs[i, :, lane] for i, output in enumerate(rig.system.outputs)}
 
 
 def _signals(rig: Rig) -> list[tuple[str, str, str, str]]:
@@ -130,16 +140,19 @@ def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
     return lines
 
 
-def sealed_toml(rig: Rig, strength: Strength, *second: Strength, redrawn: Sequence[str] = ()) -> str:
+def sealed_toml(
+    rig: Rig, strength: Strength, *second: Strength, redrawn: Sequence[str] = (), fault: Fault | None = None
+) -> str:
     """Text of the truth file: effects, verdict, accept, [truth] parameters, [draw] how the case came about.
 
-    `second`: of the second effect, where the rig has one.
+    `second`: of the second effect, where the rig has one. `fault`: a mistake in the logs, which is then all that can be
+    found.
     """
-    verdict = VERDICTS.get(rig.kind, rig.kind)
+    verdict = "data_fault" if fault else VERDICTS.get(rig.kind, rig.kind)
     separation = {name: nats for each in (strength, *second) for name, nats in each.separation.items()}
     twins = {twin for effect in rig.missing for twin in rig.system.twins(effect, rig.outputs)}
     accept = [n for n, nats in separation.items() if nats < INDISTINGUISHABLE or n in twins]
-    effects = list(rig.missing) if rig.kind == "effect" else []
+    effects = list(rig.missing) if rig.kind == "effect" and not fault else []
     truth = full_truth(rig, strength.amplitude)
     lines = ['format = "tendonlab-sealed/1"', f"effects = {_toml(effects)}"]
     lines += [
@@ -152,6 +165,8 @@ def sealed_toml(rig: Rig, strength: Strength, *second: Strength, redrawn: Sequen
         "[draw]",
         *_table(_drawn(rig, strength, redrawn) | _drawn_second(*second)),
     ]
+    if fault:
+        lines += ["", "[fault]", *_table(fault.to_dict())]
     if separation:
         nats = {name: float(f"{value:.4g}") for name, value in separation.items()}
         lines += ["", "[separation]  # nats that tell the effect from its rivals; accepted below 3", *_table(nats)]
