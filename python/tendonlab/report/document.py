@@ -75,7 +75,7 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
         (
             numbers.probability(diagnosis.verdict_probability[diagnosis.verdict]),
             f"probability of “{words.VERDICTS[diagnosis.verdict].lower()}”",
-            "calibrated" if diagnosis.calibrated else "not yet calibrated",
+            "calibrated on simulated rigs" if diagnosis.calibrated else "not yet calibrated",
         )
     ]
     for key, title in (
