@@ -224,6 +224,7 @@ class Experiment:
         loop: Loop,
         position: Sequence[float],
         velocity: Sequence[float],
+        taken: Sequence[tuple[int, int, float]] = ...,
     ) -> None: ...
     @property
     def time(self) -> list[float]: ...

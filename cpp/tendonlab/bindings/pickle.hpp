@@ -37,14 +37,28 @@ inline auto pickled_loop() {
       });
 }
 
+/// (axis, output, share) of positions that sensors told.
+using ReadingRows = std::vector<std::tuple<int, int, double>>;
+inline std::vector<integrate::TakenReading> to_readings(const ReadingRows& rows) {
+  std::vector<integrate::TakenReading> all;
+  for (const auto& [axis, output, share] : rows) all.push_back({axis, output, share});
+  return all;
+}
+inline ReadingRows to_rows(const std::vector<integrate::TakenReading>& readings) {
+  ReadingRows all;
+  for (const auto& reading : readings) all.emplace_back(reading.axis, reading.output, reading.share);
+  return all;
+}
 inline auto pickled_experiment() {
   using integrate::Experiment;
   return py::pickle(
-      [](const Experiment& e) { return py::make_tuple(e.time, e.inputs, e.loop, e.position, e.velocity); },
+      [](const Experiment& e) {
+        return py::make_tuple(e.time, e.inputs, e.loop, e.position, e.velocity, to_rows(e.taken));
+      },
       [](const py::tuple& state) {
         return Experiment{state[0].cast<std::vector<double>>(), state[1].cast<std::vector<integrate::Signal>>(),
-                          state[2].cast<integrate::Loop>(), state[3].cast<std::vector<double>>(),
-                          state[4].cast<std::vector<double>>()};
+                          state[2].cast<integrate::Loop>(),     state[3].cast<std::vector<double>>(),
+                          state[4].cast<std::vector<double>>(), to_readings(state[5].cast<ReadingRows>())};
       });
 }
 }  // namespace tendonlab::bindings

@@ -41,7 +41,8 @@ Loop make_loop(const std::string& kind, int axis, int output, double proportiona
 }
 
 Experiment make_experiment(const std::string& kind, std::vector<double> time, std::vector<Signal> inputs,
-                           const Loop& loop, std::vector<double> position, std::vector<double> velocity) {
+                           const Loop& loop, std::vector<double> position, std::vector<double> velocity,
+                           const ReadingRows& taken) {
   const SystemInfo& info = model(kind).info();
   const auto dof = static_cast<std::size_t>(info.dof);
   if (time.size() < 2) throw ParameterError(sentence("experiment with ", time.size(), " samples: expected at least 2"));
@@ -52,7 +53,12 @@ Experiment make_experiment(const std::string& kind, std::vector<double> time, st
     throw ParameterError(sentence(inputs.size(), " inputs: ", kind, " expects ", info.inputs.size()));
   if (position.size() != dof || velocity.size() != dof)
     throw ParameterError(sentence("initial state: ", kind, " expects ", dof, " positions and as many velocities"));
-  return {std::move(time), std::move(inputs), loop, std::move(position), std::move(velocity)};
+  for (const auto& [axis, output, share] : taken)
+    if (axis < 0 || axis >= info.dof || output < 0 || output >= static_cast<int>(info.outputs.size()) ||
+        !std::isfinite(share))
+      throw ParameterError(sentence("taken = (", axis, ", ", output, ", ", share, "): expected one of ", info.dof,
+                                    " degrees of freedom, one of ", info.outputs.size(), " outputs, a finite share"));
+  return {std::move(time), std::move(inputs), loop, std::move(position), std::move(velocity), to_readings(taken)};
 }
 
 py::dict simulate(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
@@ -121,7 +127,9 @@ void bind_experiments(py::module_& module) {
   py::class_<Experiment>(module, "Experiment", "One experiment as the simulator needs it.")
       .def(pickled_experiment())
       .def(py::init(&make_experiment), py::kw_only(), py::arg("kind"), py::arg("time"), py::arg("inputs"),
-           py::arg("loop"), py::arg("position"), py::arg("velocity"))
+           py::arg("loop"), py::arg("position"), py::arg("velocity"), py::arg("taken") = ReadingRows(),
+           "`taken`: (degree of freedom, output, share) of initial positions that are a share of what a sensor reads;\n"
+           "the simulation begins there less that share of what the sensor adds.")
       .def(
           "started",
           [](const Experiment& of, std::vector<double> position, std::vector<double> velocity) {

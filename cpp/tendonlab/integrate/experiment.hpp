@@ -25,12 +25,19 @@ struct Loop {
   Signal reference, disturbance;
 };
 
+/// The initial position of a degree of freedom that a sensor told: `share` times its reading, less what it adds.
+struct TakenReading {
+  int axis = 0, output = 0;
+  double share = 1;
+};
+
 /// One experiment as the simulator needs it.
 struct Experiment {
   std::vector<double> time;    ///< instants of the samples, s, increasing
   std::vector<Signal> inputs;  ///< in the order of the system's inputs; empty ones are zero
   Loop loop;
   std::vector<double> position, velocity;  ///< initial state, one number per degree of freedom
+  std::vector<TakenReading> taken;         ///< positions that are not yet freed of the bias of their sensors
 };
 
 /// A number by which outputs are differentiated: a parameter or part of the initial state. Seed k gives column k of the

@@ -50,6 +50,7 @@ class BatchOf {
       const auto* velocity = points.velocity + point * static_cast<std::size_t>(described.info.dof);
       std::copy_n(position, described.info.dof, own.simulation->y.at.position.begin());
       std::copy_n(velocity, described.info.dof, own.simulation->y.at.velocity.begin());
+      subtract_biases(own.system, experiment, own.simulation->y.at);
       own.recorder.emplace(own.system, experiment, own.out, sink.rows(point), 0, 0, false);
       own.alike = assemble_alike<Of>(described, own.with);
       own.recorder->write_together(own.alike);

@@ -83,6 +83,15 @@ integrate::Drive<T> drive_of(const System& system, const integrate::Experiment& 
   return {experiment, system.actuation.delay(), sensor.delay(), sensor.bias()};
 }
 
+/// Frees the initial positions of the biases of the sensors that told them.
+template <class System, class Motion>
+void subtract_biases(const System& system, const integrate::Experiment& experiment, Motion& at) {
+  for (const integrate::TakenReading& reading : experiment.taken) {
+    auto& position = at.position[static_cast<std::size_t>(reading.axis)];
+    position = position - reading.share * system.sensor[static_cast<std::size_t>(reading.output)].bias();
+  }
+}
+
 template <template <class> class Of, class T>
 void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) {
   const auto& experiment = job.experiment;
@@ -91,6 +100,7 @@ void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) 
   const auto velocity = job.seeded<T>(experiment.velocity, integrate::Seed::Of::velocity);
   std::copy(position.begin(), position.end(), simulation.y.at.position.begin());
   std::copy(velocity.begin(), velocity.end(), simulation.y.at.velocity.begin());
+  subtract_biases(system, experiment, simulation.y.at);
   integrate::Recorder<Of, T> recorder(system, experiment, job.out, job.out.rows(job.settings.outputs),
                                       static_cast<int>(job.first), static_cast<int>(job.count), job.shows_ports());
   std::optional<Of<Lanes>> alike;

@@ -110,6 +110,7 @@ def prepare(experiment: Experiment, system: Simulator, replay: Replay) -> Prepar
         loop=_loop(experiment, system, replay, measured),
         position=position.tolist(),
         velocity=velocity.tolist(),
+        taken=start.taken(shape),
     )
     scale = scales_of(time, measured[[s.axis is not None for s in outputs]])
     return Prepared(

@@ -16,10 +16,11 @@ from tendonlab.simulation.signals import motion_at_start
 class Start:
     """`follows`: for each degree of freedom the measured one that it moves with as if nothing stretched, itself where
     it was measured; None where nothing was. `motion`: position, velocity and travel of the measured ones. `position`
-    and `velocity`: what the experiment states."""
+    and `velocity`: what the experiment states. `sensor`: the output that tells each measured one."""
 
     follows: tuple[int | None, ...]
     motion: Mapping[int, tuple[float, float, float]]
+    sensor: Mapping[int, int]
     position: Mapping[int, float]
     velocity: Mapping[int, float]
 
@@ -37,6 +38,14 @@ class Start:
             position[..., j] = self.position.get(j, share * y)
             velocity[..., j] = self.velocity.get(j, share * rate)
         return position, velocity
+
+    def taken(self, shape: np.ndarray) -> list[tuple[int, int, float]]:
+        """(degree of freedom, output, share) of the positions that are a share of what a sensor reads."""
+        return [
+            (j, self.sensor[known], float(self._share(shape, j, known)))
+            for j, known in enumerate(self.follows)
+            if known is not None and j not in self.position
+        ]
 
     def nuisances(self, shape: np.ndarray) -> tuple[tuple[tuple[str, int], ...], tuple[float, ...]]:
         """What is neither stated nor at rest, as ("position" | "velocity", degree of freedom), and the sd of each."""
@@ -58,11 +67,12 @@ class Start:
 
 def start_of(experiment: Experiment, info: SystemInfo, measured: np.ndarray) -> Start:
     """The start that the samples `measured`, (outputs, samples), and the statements of an experiment show."""
-    motion = {
-        signal.axis: (*motion_at_start(experiment.time, y), float(np.nanmax(y) - np.nanmin(y)))
-        for signal, y in zip(info.outputs, measured, strict=True)
-        if signal.axis is not None and np.isfinite(y).any()
-    }
+    motion: dict[int, tuple[float, float, float]] = {}
+    sensor: dict[int, int] = {}
+    for c, (signal, y) in enumerate(zip(info.outputs, measured, strict=True)):
+        if signal.axis is not None and np.isfinite(y).any():
+            motion[signal.axis] = (*motion_at_start(experiment.time, y), float(np.nanmax(y) - np.nanmin(y)))
+            sensor[signal.axis] = c
     first = next(iter(motion), None)
     position: dict[int, float] = {}
     velocity: dict[int, float] = {}
@@ -73,4 +83,4 @@ def start_of(experiment: Experiment, info: SystemInfo, measured: np.ndarray) -> 
                 position.setdefault(signal.axis, experiment.initial[signal.name])
             if rate in experiment.initial:
                 velocity.setdefault(signal.axis, experiment.initial[rate])
-    return Start(tuple(j if j in motion else first for j in range(info.dof)), motion, position, velocity)
+    return Start(tuple(j if j in motion else first for j in range(info.dof)), motion, sensor, position, velocity)
