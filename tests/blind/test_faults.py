@@ -87,7 +87,7 @@ FOLDERS = ("wrong", "right")
 TRUTH = {
     "effects": [],
     "verdict": "data_fault",
-    "fault": {"problem": "sign", "signals": ["u", "y"], "experiment": ""},
+    "fault": {"problem": "sign", "signals": ["u", "y"], "experiments": []},
 }
 
 

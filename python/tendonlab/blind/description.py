@@ -169,7 +169,8 @@ class System:
     `forms`, `largest`: functional forms and largest amplitudes of effects that `effects.py` does not list. `causes`:
     unknown causes. `withheld`: parameters that only an effect of the nominal simulator has, besides its own name.
     `strengthen`: parameters of what is neither the usual friction nor one of `sizes`. `mechanics`: bodies for the
-    simulation in `plant`, or `simulate`: a simulation of its own.
+    simulation in `plant`, or `simulate`: a simulation of its own. `is_quasistatic`: its logs do not tell how fast time
+    passes.
     """
 
     kind: str
@@ -201,6 +202,7 @@ class System:
     fine_step: float
     mechanics: Callable[[Lanes, float], Mechanics] | None = None
     simulate: Callable[[Lanes, Scene, float, int], Run] | None = None
+    is_quasistatic: bool = False
 
     @property
     def commands_torque(self) -> bool:

@@ -40,7 +40,7 @@ class Fault:
         return {
             "problem": self.problem,
             "signals": list(self.signals),
-            "experiment": self.experiment,
+            "experiments": [name for name in (self.experiment, self.original) if name],
             "factor": self.factor,
             "seconds": self.seconds,
         }
@@ -62,7 +62,8 @@ def draw_fault(rig: Rig, draw: np.random.Generator) -> Fault:
         signal = str(draw.choice(list(units)))
         guilty = tuple(units) if len(units) == 2 else ()  # an input and one output: turning either is the same
         return Fault(problem=problem, signals=tuple(dict.fromkeys((signal, *guilty))), factor=-1.0)
-    units[TIME] = TIME
+    if not rig.system.is_quasistatic:
+        units[TIME] = TIME
     signal = str(draw.choice(list(units)))
     factor = float(draw.choice(FACTORS.get(units[signal], OTHERS)))
     return Fault(problem=problem, signals=(signal,), factor=factor)

@@ -153,7 +153,7 @@ def _fault(fault: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, obj
     """Something of the right kind blocks, and it names a signal, or the experiment, that is wrong."""
     kind = [entry for entry in report.get("data", []) if entry["blocks"] and entry["problem"] == fault["problem"]]
     named = {str(name) for entry in kind for name in (entry["signal"], entry["experiment"], *entry.get("or", []))}
-    return {"fault_kind": bool(kind), "fault_signal": bool(named & {*fault["signals"], fault["experiment"]})}
+    return {"fault_kind": bool(kind), "fault_signal": bool(named & {*fault["signals"], *fault["experiments"]})}
 
 
 def _part(name: str, index: int) -> str:

@@ -18,7 +18,7 @@ from tendonlab.data import Dataset, require_dataset
 from tendonlab.simulation.system import System, require_system
 
 UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
-UNSAMPLED = "Signs, scales and lags could not be checked: {kind} has no equation of motion."
+UNTIMED = "Signs, scales and lags could not be checked: {kind} has steady points, no time."
 UNEXPLAINED = (
     "Lags could not be checked: the simulator's equation of motion does not describe these logs, "
     "with any one factor on a channel."
@@ -34,8 +34,8 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     system = dataset.system() if system is None else require_system(system)
     marked = {} if system.info.steady else marks(dataset)
     found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
-    if system.info.dof == 0:
-        notes.append(UNSAMPLED.format(kind=system.kind))
+    if system.info.steady:
+        notes.append(UNTIMED.format(kind=system.kind))
     elif (logs := read_logs(dataset, system.info, marked)) is None:
         notes.append(UNMOVED)
     else:

@@ -18,7 +18,8 @@ from tendonlab.simulation.system import System
 @dataclass(frozen=True)
 class Equation:
     """The equations of a system. The first: the balance of efforts of all parts that move together. Where every axis
-    was measured, one for each further axis: its own balance. One for each other output: what it should read."""
+    was measured, one for each further axis: its own balance. One for each other output: what it should read. A system
+    without degrees of freedom has these alone."""
 
     dataset: Dataset
     system: System
@@ -41,15 +42,22 @@ class Equation:
         return tuple(s.name for s in info.outputs if s.axis is None and s.name in self.dataset.signals)
 
     @cached_property
+    def measured(self) -> tuple[str, ...]:
+        """The measured outputs: those of axes first."""
+        return (*self.axes.values(), *self.others)
+
+    @cached_property
     def predicted(self) -> tuple[tuple[str, ...], ...]:
         """For each equation the signals that it predicts."""
+        if not self.axes:
+            return tuple((name,) for name in self.others)
         inputs = tuple(s.name for s in self.system.info.inputs if s.name in self.dataset.signals)
         return (inputs, *((self.axes[j],) for j in self.separate), *((name,) for name in self.others))
 
     @cached_property
     def moved(self) -> tuple[str, ...]:
         """The axis signals whose balance the first equations are."""
-        return (next(iter(self.axes.values())), *(self.axes[j] for j in self.separate))
+        return (*tuple(self.axes.values())[:1], *(self.axes[j] for j in self.separate))
 
     def along(self, logs: Logs) -> tuple[Stretch, ...]:
         """The logs cut where conditions change, ready to be evaluated."""
@@ -103,10 +111,10 @@ class Conditions:
         """The conditions of `experiment`."""
         system = equation.system.under(experiment)
         values, active = system.values(), _without_memory(system)
-        shape = np.array(_core.rigid_motion(system.kind, values, active)[0])
+        shape = np.array(_core.rigid_motion(system.kind, values, active)[0]) if equation.axes else np.ones(0)
         names = [p.name for p in system.info.parameters]
         fixed = frozenset(names.index(name) for name in experiment.conditions if name in names)
-        return cls(values, active, fixed, shape / shape[next(iter(equation.axes))])
+        return cls(values, active, fixed, shape / shape[next(iter(equation.axes))] if equation.axes else shape)
 
 
 @dataclass(frozen=True)
@@ -156,11 +164,18 @@ class Stretch:
             if parameter not in self.under.fixed:
                 values[row, parameter] += by
         kind = equation.system.kind
+        if not equation.axes:
+            seen = np.array([self._read(kind, row)[list(equation.places)] for row in values.tolist()])
+            return np.asarray(self.rest - seen)
         found = _core.balance(kind, values, self.under.active, self.core, self.position, self.velocity)
         missing = found["inertia"] * self.acceleration - found["effort"]
         seen = found["outputs"][:, list(equation.places)]
         together = np.tensordot(missing, self.under.shape, axes=(1, 0))[:, None]
         return np.concatenate([together, missing[:, list(equation.separate)], self.rest - seen], axis=1)
+
+    def _read(self, kind: str, values: list[float]) -> np.ndarray:
+        """What every output should read (outputs, samples), of a system without degrees of freedom."""
+        return np.asarray(_core.simulate(kind, values, self.under.active, self.core, [], _core.Settings())["outputs"])
 
 
 def _motion(
@@ -168,6 +183,8 @@ def _motion(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position, velocity and acceleration of every degree of freedom; what was not measured moves as if nothing
     stretched."""
+    if not equation.axes:
+        return tuple(np.zeros((3, 0, int(own.sum()))))  # type: ignore[return-value]
     first = logs.moving[equation.moved[0]][:, own]
     rows = [
         logs.moving[equation.axes[j]][:, own] if j in equation.axes else share * first for j, share in enumerate(shape)

@@ -15,7 +15,7 @@ from tendonlab.checking.terms import Terms, terms
 SAMPLES, SCANNED = 4000, 1000  # that decide, and that the scan looks at
 LONGEST, PART = 0.5, 0.25  # s, and share of the shortest experiment: lags that are looked for
 GROWTH = 1.3  # from one lag that is tried to the next
-OWN = 10.0  # nats by which a lag of its own must suit an experiment better than the common one
+OWN = 3.0  # nats by which a lag of its own must suit an experiment better than the common one, to start the search
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 ROUNDS, CLOSE = 12, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
 NUDGE = 0.1  # of the step of the logs, by which the column of a lag is found
@@ -36,9 +36,8 @@ class Lags:
 
 def lags(equation: Equation, logs: Logs) -> Lags:
     """The lag of every output in every experiment, all of them together with the parameters."""
-    channels = (*equation.axes.values(), *equation.others)
-    late = np.zeros((len(channels), len(equation.dataset.experiments)))
-    late[: len(equation.axes)] = _scanned(equation, logs)
+    channels = equation.measured
+    late = np.tile(_scanned(equation, logs), (len(channels), 1))
     kept = _regular(logs, SAMPLES)
     share = np.full(len(equation.predicted), ROUGH_SHARE)
     sd = np.full(late.shape, np.inf)
@@ -118,7 +117,8 @@ def _steps(
 
 
 def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
-    """The lag of all axes together in each experiment, in whole steps of the logs, at which the equation fits best."""
+    """The lag of all outputs together in each experiment, in whole steps of the logs, at which the equation fits
+    best."""
     kept, num = _regular(logs, SCANNED), len(equation.dataset.experiments)
     at = terms(equation, logs.at(kept))
     fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
@@ -131,7 +131,7 @@ def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
     tried = np.concatenate([-sizes[::-1], [0], sizes])
     cost = np.empty((len(tried), num))
     for k, steps in enumerate(tried):
-        moved = logs.rolled(tuple(equation.axes.values()), int(steps)).at(kept)
+        moved = logs.rolled(equation.measured, int(steps)).at(kept)
         residual = equation.evaluate(equation.along(moved), len(kept)) + changed
         surprise = np.sum(np.log1p((residual / scale) ** 2), axis=0)
         cost[k] = np.bincount(moved.run, surprise, num)

@@ -18,9 +18,11 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
 CLEAR = 3.0  # sd of its noise that a velocity must exceed for its direction to be known
+SLIDING = 0.3  # of its rms that a velocity must exceed, of systems that are told velocities
 GAP = 3.0  # median steps between two samples that make a gap
 ENDS = 4.0  # sd of the Gaussian at each end of a record where it looks beyond the record
 TIME = "time"
+VELOCITIES = ("flow", "angular_speed")
 
 
 @dataclass(frozen=True)
@@ -72,10 +74,9 @@ class Logs:
         return paths
 
     def rolled(self, signals: Sequence[str], steps: int) -> Logs:
-        """The logs with axes moved by whole steps towards the past; what passes an end comes from next to it."""
+        """The logs with outputs moved by whole steps towards the past; what passes an end comes from next to it."""
         at = np.clip(np.arange(len(self.run)) + steps, 0, len(self.run) - 1)
-        moving = {name: rows[:, at] if name in signals else rows for name, rows in self.moving.items()}
-        return replace(self, moving=moving)
+        return self._each(lambda name, rows: rows[:, at] if name in signals else rows)
 
     def nudged(self, signal: str, by: float) -> Logs:
         """The logs with an output moved by a small part of a step, s, towards the past."""
@@ -104,19 +105,19 @@ class Logs:
 
 
 def read_logs(dataset: Dataset, info: SystemInfo, marked: Marks | None = None) -> Logs | None:
-    """The logs on a common grid; None where no axis was measured or nothing moves. `marked`: their outliers where these
-    are known already."""
+    """The logs on a common grid; None where no axis of those that the system has was measured, or nothing moves.
+    `marked`: their outliers where these are known already."""
     axes = [s.name for s in info.outputs if s.axis is not None and s.name in dataset.signals]
-    if not axes or min(len(e.data) for e in dataset.experiments) < 8 * smoothing.BLOCK:
+    if (info.dof and not axes) or min(len(e.data) for e in dataset.experiments) < 8 * smoothing.BLOCK:
         return None
     step = float(np.median(np.concatenate([np.diff(e.time) for e in dataset.experiments])))
     marked = marks(dataset) if marked is None else marked
     records = [_Record.of(info, e, step, marked) for e in dataset.experiments]
     positions = [r.values[name] for r in records for name in axes]
     noise = [smoothing.noise_of(_despiked(e, name, marked)) for e in dataset.experiments for name in axes]
-    if not any(np.ptp(y) > 10 * s for y, s in zip(positions, noise, strict=True)):
+    if axes and not any(np.ptp(y) > 10 * s for y, s in zip(positions, noise, strict=True)):
         return None
-    total = sum(len(r.values[axes[0]]) for r in records)
+    total = sum(len(r.whole) for r in records)
     sd = smoothing.width(positions, noise, total)
     quiet = {name: max(noise[k :: len(axes)]) for k, name in enumerate(axes)}
     return _joined([r.smoothed(info, axes, quiet, sd, step) for r in records], step * smoothing.stride(sd))
@@ -151,8 +152,14 @@ class _Record:
         driving = {name: rate[:2] * self._derivatives(name, sd, 2) for name in inputs}
         rest = [s.name for s in info.outputs if s.name in self.values and s.name not in axes]
         others = {name: self._derivatives(name, sd, 1) for name in rest}
-        time = step * smoothing.stride(sd) * np.arange(moving[axes[0]].shape[1])
-        clear = self._clear(sd) & np.all([_slides(moving[n], noise[n], sd, step) for n in axes], axis=0)
+        clear = self._clear(sd)
+        for name in axes:
+            clear &= _slides(moving[name], noise[name], sd, step)
+        for signal in info.inputs:
+            if not info.dof and signal.name in driving and signal.dimension in VELOCITIES:
+                speed = np.abs(driving[signal.name][0])
+                clear &= speed >= SLIDING * np.sqrt(np.mean(np.square(speed)))
+        time = step * smoothing.stride(sd) * np.arange(len(clear))
         return Logs(moving, driving, others, np.zeros(len(time), dtype=int), time, 0.0, clear)
 
     def _derivatives(self, name: str, sd: float, num: int) -> np.ndarray:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.logs import TIME, Logs
+from tendonlab.checking.logs import TIME, VELOCITIES, Logs
 from tendonlab.checking.regression import MOST_STEPS, Fit
 from tendonlab.checking.terms import terms
 from tendonlab.fitting.noise import integrated_time
@@ -19,7 +19,8 @@ STEPS = 6  # of a fit in the search
 ROUGH_SHARE = 0.2  # of the samples that count as independent before the residual is known
 REFINED = 4  # of the best, which are looked at closely
 SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, beyond which factors are looked for
-EXPLAINED = 0.5  # level of the residual beyond which a corrected log explains too little to blame a channel
+EXPLAINED = 0.7  # level of the residual beyond which an equation explains too little to judge by: half the power
+CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
 BLOCKING = 1.7  # a factor below it is a parameter
@@ -48,31 +49,37 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     searched = [_searched(equation, rough, signals, sign, share) for signals, sign in _suspects(equation)]
     leading = sorted(searched, key=lambda f: f.fit.cost)[:REFINED]
     found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
+    found = [f for f in found if not _blocks(-f.value) or f.fit.strain < max(plain.strain, CREDIBLE)]
+    if not found:
+        return []
     best = min(found, key=lambda f: f.fit.cost)
-    if not _blocks(best.value) or plain.cost - best.fit.cost < LEAST_GAIN:
+    told = best.fit.level < EXPLAINED
+    if not told.any() or not _blocks(best.value) or plain.cost - best.fit.cost < LEAST_GAIN:
         return []
     slack = LEAST_GAIN + ALIKE_SHARE * (plain.cost - best.fit.cost)
     found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack]
     fine = logs.thinned(FINE)
-    share = independent(best, equation, fine)
+    share = told * independent(best, equation, fine)
     base = terms(equation, fine).fit(share)
     polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
     judged = sorted((replace(f, gain=base.cost - f.fit.cost) for f in polished), key=lambda f: f.fit.cost)
     best = judged[0]
-    if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level > EXPLAINED):
+    if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
 
 
 def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
     """Sets of channels that may share a factor, with its sign. A limit is no suspect: what it does not bound says
-    nothing of its size."""
+    nothing of its size. Nor is the size of a velocity that moves nothing and only turns friction."""
     info, known = equation.system.info, equation.dataset.signals
     inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio" and not s.limit]
     axes = tuple(equation.axes.values())
     sets = [(name,) for name in (*inputs, *axes, *equation.others)] + ([axes] if len(axes) > 1 else [])
+    turning = {s.name for s in info.inputs if s.dimension in VELOCITIES and not info.dof}
     for signals in sets:
-        yield signals, 1.0
+        if not turning.intersection(signals):
+            yield signals, 1.0
         yield signals, -1.0
     yield (TIME,), 1.0
 

@@ -46,10 +46,10 @@ def repeats(values: np.ndarray) -> bool:
 
 
 def width(positions: Sequence[np.ndarray], noise: Sequence[float], total: int) -> float:
-    """Sd of the Gaussian, in samples, at which noise is a small share of the acceleration of these even records.
-    `total`: samples of all experiments."""
+    """Sd of the Gaussian, in samples, at which noise is a small share of the acceleration of these even records; the
+    least where there is none. `total`: samples of all experiments."""
     least = max(LEAST_WIDTH, total / MOST_SAMPLES)
-    longest = max(least, min(len(y) for y in positions) / 30.0)
+    longest = max(least, min((len(y) for y in positions), default=0) / 30.0)
     sd = least
     while sd < longest:
         bends = sum(float(np.sum(np.square(smooth(y, sd, order=2)))) for y in positions)

@@ -122,7 +122,7 @@ def _size(
     equation: Equation, logs: Logs, residual: np.ndarray, silent: np.ndarray, stiffness: dict[str, np.ndarray]
 ) -> np.ndarray:
     """Rms of what the inputs contribute to the first equation and an axis to its own; what an output varies."""
-    sizes = [rms((residual - silent)[0])]
+    sizes = [rms((residual - silent)[0])] if equation.axes else []
     for k, name in enumerate(equation.moved[1:], start=1):
         sizes.append(rms(stiffness[name][k] * logs.moving[name][0]))
     sizes += [float(np.std(logs.others[name])) for name in equation.others]

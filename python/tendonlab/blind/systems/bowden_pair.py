@@ -138,4 +138,5 @@ BOWDEN_PAIR = System(
     coarse_step=0.004,
     fine_step=0.004,
     simulate=simulate,
+    is_quasistatic=True,
 )

@@ -1,0 +1,66 @@
+"""The check on rigs without an equation of motion, and on rigs of which one output is not understood."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tendonlab as tl
+from tendonlab.blind.description import Run
+from tendonlab.blind.faults import Fault
+from tendonlab.blind.rig import Rig, draw_rig
+from tendonlab.blind.strength import Strength
+from tendonlab.blind.systems import SYSTEMS
+from tendonlab.blind.write import record, write_dataset
+
+STILL = Strength(
+    amplitude=0.0, gap_noise=0.0, nominal_gap_noise=0.0, floor=np.zeros(1), limited=False, met=True, separation={}
+)
+
+
+@cache
+def logs(system: str) -> tuple[Rig, Run]:
+    draw = np.random.default_rng(3)
+    rig = draw_rig(draw, effect="", kind="parameters_only", system=SYSTEMS[system], excitation="rich")
+    return rig, record([rig], [STILL])[0]
+
+
+def found(folder: Path, system: str, fault: Fault | None) -> list[tuple[str, str, float]]:
+    """Problem, place and size of what blocks."""
+    rig, run = logs(system)
+    write_dataset(replace(rig), run, folder / "rig", name="rig", description="", fault=fault)
+    findings = tl.check(tl.load(folder / "rig")).findings
+    return [(f.problem, f.place, f.factor or f.seconds or 0.0) for f in findings if f.blocks]
+
+
+@pytest.mark.parametrize("system", ["bowden_pair", "ccsrm"])
+def test_right_logs_pass(tmp_path: Path, system: str) -> None:
+    assert found(tmp_path, system, None) == []
+
+
+@pytest.mark.parametrize("factor", [2.0, 0.5, -1.0, 1000.0])
+def test_a_wrong_torque_of_a_bowden_pair_is_found(tmp_path: Path, factor: float) -> None:
+    problem = "sign" if factor < 0 else "scale"
+    [(kind, place, size)] = found(
+        tmp_path, "bowden_pair", Fault(problem=problem, signals=("output_torque",), factor=factor)
+    )
+    assert kind == problem
+    assert "output_torque" in place or "input_torque" in place
+    assert size in (pytest.approx(factor, rel=0.1), pytest.approx(1 / factor, rel=0.1))
+
+
+def test_a_late_run_of_a_bowden_pair_is_found(tmp_path: Path) -> None:
+    [(kind, place, seconds)] = found(tmp_path, "bowden_pair", Fault(problem="clock", experiment="run-04", seconds=0.1))
+    assert (kind, "run-04" in place) == ("clock", True)
+    assert seconds == pytest.approx(0.1, abs=0.02)
+
+
+def test_a_wrong_sign_is_found_beside_a_tension_that_the_check_cannot_predict(tmp_path: Path) -> None:
+    """The bristles of the contacts remember, and hold one of the tensions: its equation explains little."""
+    [(kind, place, _)] = found(tmp_path, "ccsrm", Fault(problem="sign", signals=("joint_angle",), factor=-1.0))
+    assert kind == "sign"
+    assert "joint_angle" in place
