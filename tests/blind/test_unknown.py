@@ -103,7 +103,7 @@ def test_a_cause_changes_the_motion_and_grows_with_its_amplitude(system: str, ca
     truths = [full_truth(rig, share * largest_amplitude(rig)) for share in (0.0, 0.1, 1.0)]
     rigs, quiet, step = [rig] * 3, [False] * 3, rig.sample_time / max(1, round(rig.sample_time / 5e-4))
     run = simulate(lanes_of(rigs, truths, is_noisy=quiet), scene_of(rigs, is_noisy=quiet), step=step)
-    none, little, much = np.split(run.outputs[0], 3, axis=1)
+    none, little, much = np.split(run.outputs, 3, axis=2)
     assert 0.0 < np.std(little - none) < np.std(much - none)
     assert nominal_effects(rig) == SYSTEMS[system].nominal_effects
 
