@@ -142,10 +142,17 @@ def test_a_gear_that_ripples_passes_on_as_many_turns(form: int):
     np.testing.assert_allclose(velocity[5:-5], speed * (1.0 + wave)[5:-5], rtol=0.01)
 
 
-def drawn(effect: str, *, kind: str = "effect", excitation: str = "rich", form: int = 0) -> Rig:
-    draw = np.random.default_rng(4)
-    rig = draw_rig(draw, effect=effect, kind=kind, system=CABLE_JOINT, excitation=excitation, has_repeats=False)
-    return replace(rig, form=form, outputs=CABLE_JOINT.output_names)
+def drawn(effect: str, *, kind: str = "effect", excitation: str = "rich", num_samples: int | None = None) -> Rig:
+    rig = draw_rig(
+        np.random.default_rng(4),
+        effect=effect,
+        kind=kind,
+        system=CABLE_JOINT,
+        excitation=excitation,
+        num_samples=num_samples,
+        has_repeats=False,
+    )
+    return replace(rig, form=0, outputs=CABLE_JOINT.output_names)
 
 
 def clean(rows: list[Rig], truths: list[dict[str, float]], *, step: float = 2.5e-3) -> Run:
@@ -181,22 +188,23 @@ def test_the_library_runs_alike_without_noise(effect: str):
     truth, runs = full_truth(rig, 1.0), rig.experiments[:3]
     run = clean([replace(rig, experiments=runs)], [truth], step=1e-3)
     contained = [name for name in CABLE_JOINT.nominal_effects if name != effect] + [effect] * bool(effect)
-    asymmetry = {"joint_level_asymmetry": 0.0} if effect == "joint:asymmetry" else {}
+    dry = effect in ("joint:coulomb", "joint:load_dependence")  # a joint that sticks: forces are compared in motion
     for lane, experiment in enumerate(runs):
-        values = {name: value + experiment.add.get(name, 0.0) for name, value in truth.items()} | asymmetry
+        values = {name: value + experiment.add.get(name, 0.0) for name, value in truth.items()}
         system = tl.System(kind="cable_joint", parameters=values, effects=contained)
         driven = pd.DataFrame({"actuator_velocity": experiment.reference}, index=pd.Index(run.time, name="t"))
         other = system.simulate(driven)
         for i, name in enumerate(CABLE_JOINT.output_names):
             left = np.abs(run.outputs[i, :, lane] - np.asarray(other[name])) / USUAL[i]
+            left = left[np.abs(run.outputs[VELOCITY, :, lane]) > 1e-6] if dry else left
             assert np.quantile(left, 0.95) < (0.5 if effect == "load:offset" else 0.1)
 
 
 @pytest.mark.parametrize("excitation", ["rich", "poor"])
 def test_a_rig_that_lacks_nothing_is_explained_to_its_noise(excitation: str, tmp_path: Path):
-    rig = drawn("", kind="none", excitation=excitation)
+    rig = drawn("", kind="none", excitation=excitation, num_samples=300)
     (strength,), folder = tune([rig]), tmp_path / "rig"
-    (run,) = record([rig], [strength])
+    (run,) = record([rig], [strength], step=1e-3)
     write_dataset(rig, run, folder, name="rig", description="")
     dataset = tl.load(folder)
     assert dataset.kind == "cable_joint"
@@ -206,11 +214,13 @@ def test_a_rig_that_lacks_nothing_is_explained_to_its_noise(excitation: str, tmp
 
 
 def test_the_joint_lacks_what_the_library_knows_and_nuts_that_are_driven_can_show():
-    """Motor and gear idle, bushings have their branches, and a joint without dry friction has none to bend."""
+    """Motor and gear idle, bushings have their branches, and a joint without dry friction has little to refine."""
     known = {effect.name for effect in tl.system_info("cable_joint").effects}
     idle = {name for name in known if name.startswith(("motor:", "actuation:", "sensor.motor_velocity:"))}
     nominal = {"gear:arctan", "bushing_1:bushing_branches", "bushing_2:bushing_branches"}
-    assert set(CABLE_JOINT.effects) == known - idle - nominal - {"joint:presliding"}
+    structural = {"winding:winding", "cable:taut_compliance"}
+    hidden = {"joint:presliding", "joint:stribeck", "joint:asymmetry"}
+    assert set(CABLE_JOINT.effects) == known - idle - nominal - structural - hidden
 
 
 def test_runs_differ_by_preload_and_payload_and_begin_at_rest():

@@ -59,13 +59,13 @@ OFFSETS = ("load:offset", *(f"{force}:bias" for force in FORCES))
 STRETCH = ("cable:toe_region", "cable:preload_variation")
 ANGLE = ("sensor.joint_angle:bias", "gear:ripple", "load:offset", "cable:preload_variation")
 LATE = ("sensor.joint_angle:delay", "sensor.joint_velocity:delay", *(f"{force}:delay" for force in FORCES))
-AT_REST = ("stiction:hold", "joint:coulomb", "joint:viscous", "joint:stribeck", "joint:load_dependence")
+AT_REST = ("stiction:hold", "joint:coulomb", "joint:viscous", "joint:load_dependence")
 WRAPS = tuple(
     tuple(f"{side}:{name}" for name in ("bushing_sine", "bushing_capstan", "coulomb", "viscous", "stribeck"))
     for side in SIDES
 )
 RIVALS: dict[str, tuple[str, ...]] = {}
-for group in (OFFSETS, STRETCH, ANGLE, LATE, AT_REST, *WRAPS, ("joint:asymmetry", "joint:viscous", *OFFSETS)):
+for group in (OFFSETS, STRETCH, ANGLE, LATE, AT_REST, *WRAPS):
     RIVALS |= {
         name: tuple(dict.fromkeys((*RIVALS.get(name, ()), *(other for other in group if other != name))))
         for name in group
@@ -94,7 +94,7 @@ def strengthen(
     if element in SIDES:
         found = _bushing(element, effect, amplitude, shape=shape)
     elif element == "joint":
-        found = _joint(effect, amplitude, truth=truth, shape=shape)
+        found = _joint(effect, amplitude, truth=truth)
     elif name == "cable:toe_region":
         found = {"cable_toe_tension": truth["pretension"] * amplitude}
     elif name == "gear:ripple":
@@ -119,18 +119,11 @@ def _bushing(side: str, effect: str, amplitude: float, *, shape: Mapping[str, fl
     }[effect]
 
 
-def _joint(
-    effect: str, amplitude: float, *, truth: Mapping[str, float], shape: Mapping[str, float]
-) -> dict[str, float]:
+def _joint(effect: str, amplitude: float, *, truth: Mapping[str, float]) -> dict[str, float]:
     return {
         "coulomb": {"joint_coulomb": 0.1 * amplitude},
         "viscous": {"joint_viscous": truth["joint_viscous"] * amplitude},
-        "stribeck": {"joint_static_excess": 0.15 * amplitude, "joint_stribeck_velocity": shape["stribeck_velocity"]},
         "load_dependence": {"joint_load_dependence": 0.1 * amplitude},
-        "asymmetry": {
-            "joint_level_asymmetry": 0.0,
-            "joint_viscous_asymmetry": 0.5 * shape["sign"] * amplitude * truth["joint_viscous"],
-        },
     }[effect]
 
 
@@ -157,7 +150,7 @@ CABLE_JOINT = System(
     ),
     optional=("joint_velocity", 0.3, ("sensor.joint_velocity:bias", "sensor.joint_velocity:delay")),
     effects=(
-        *(f"joint:{name}" for name in ("coulomb", "viscous", "stribeck", "load_dependence", "asymmetry")),
+        *(f"joint:{name}" for name in ("coulomb", "viscous", "load_dependence")),
         "gear:ripple",
         *STRETCH,
         *(name for wraps in WRAPS for name in wraps),

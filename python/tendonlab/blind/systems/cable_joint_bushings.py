@@ -72,7 +72,7 @@ class Bushings:
             height, at = self.lanes.get("bump"), self.lanes.get("bump_angle")
             level = level * bump(angle, height=height, at=at, width=np.where(width > 0, width, 1.0))
         force = common + sense * level
-        return force + self._rubbing(guided, sense) if self.has_laws else force
+        return np.asarray(force + self._rubbing(guided, sense) if self.has_laws else force)
 
     def _wrapped(self, angle: Array, preload: Array) -> Array:
         """Friction that grows with the wrap, N."""
