@@ -8,7 +8,7 @@ first measured output closes the loop.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,17 @@ def simulate(lanes: Lanes, scene: Scene, *, step: float = 2e-5, stride: int = 1)
         raise ArithmeticError(f"state is not finite: step {step} s is too long for these parameters")
     time: Array = np.arange(len(rows), dtype=float) * scene.sample_time * stride
     return Run(time=time, command=command, outputs=np.moveaxis(outputs, 1, 0), state=np.moveaxis(state, 1, 0))
+
+
+def prescribed(rows: Iterable[tuple[Array, Array]], scene: Scene, *, step: float, stride: int) -> Run:
+    """The run whose `rows` are readings and state at every logged sample, under prescribed inputs. Raises
+    ArithmeticError where a state is not finite.
+    """
+    outputs, state = (np.stack(part, axis=1) for part in zip(*rows, strict=True))
+    if not np.all(np.isfinite(state)):
+        raise ArithmeticError(f"state is not finite: step {step} s is too long for these parameters")
+    time: Array = np.arange(outputs.shape[1], dtype=float) * scene.sample_time * stride
+    return Run(time=time, command=scene.reference[scene.num_settle :: stride], outputs=outputs, state=state)
 
 
 def steps_per_sample(scene: Scene, step: float) -> int:

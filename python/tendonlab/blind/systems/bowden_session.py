@@ -13,6 +13,8 @@ import numpy as np
 
 from tendonlab.blind.description import Array, Experiment
 
+from .recorded import recorded
+
 Draw = np.random.Generator
 Shape = Callable[[Array, Draw], Array]
 
@@ -85,7 +87,6 @@ def stairs(time: Array, draw: Draw) -> Array:
 
 SPRING = None  # the torque of a load that is a spring
 Plan = tuple[Shape, Shape | None, float, int]  # motion, torque, size of both, group
-Planned = tuple[str, str | None, Plan, tuple[Array, Array]]  # split, label of repeats, plan, torque and velocity
 # the motion that is repeated, four more to fit, three held out of another kind, size or group
 RICH: tuple[Plan, ...] = (
     (ramps, multi_sine, 1.0, 0),
@@ -117,26 +118,11 @@ def session(
     """
     plans = RICH if excitation == "rich" else POOR
     time: Array = np.arange(num_samples, dtype=float) * sample_time
-    order = [("train", plan) for plan in plans[1:5]] + [("test", plan) for plan in plans[5:]]
-    order = [order[i] for i in draw.permutation(len(order))]
-    runs: list[Planned] = [(split, None, plan, _signals(plan, time, draw)) for split, plan in order]
-    first, fresh = _signals(plans[0], time, draw), draw.spawn(1)[0]
-    again = [first] + [first if has_repeats else _signals(plans[0], time, fresh) for _ in range(2)]
-    label = "A" if has_repeats else None
-    for place, signals in zip((0, 5, 9), again, strict=True):
-        runs.insert(place, ("train", label, plans[0], signals))
-    breaks = np.cumsum([0.0, *(num_samples * sample_time + draw.uniform(20, 90, len(runs) - 1))])
+    seconds = num_samples * sample_time
+    runs = recorded(draw, plans, lambda plan, by: _signals(plan, time, by), seconds=seconds, has_repeats=has_repeats)
     return [
-        Experiment(
-            name=f"run-{i + 1:02d}",
-            reference=torque,
-            others={"input_velocity": velocity},
-            start=float(np.round(breaks[i], 1)),
-            split=split,
-            repeat=repeat,
-            add=dict(GROUPS[plan[3]]),
-        )
-        for i, (split, repeat, plan, (torque, velocity)) in enumerate(runs)
+        Experiment(reference=torque, others={"input_velocity": velocity}, add=dict(GROUPS[plan[3]]), **named)
+        for named, plan, (torque, velocity) in runs
     ]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from tendonlab.blind.description import Array, Lanes, Run, Scene
 from tendonlab.blind.friction import Friction
-from tendonlab.blind.plant import steps_per_sample
+from tendonlab.blind.plant import prescribed, steps_per_sample
 from tendonlab.blind.sensing import Sensors
 from tendonlab.blind.unknown import stop
 
@@ -29,12 +29,8 @@ OVERTONE = 0.35  # of the other form of the ripple
 
 def simulate(lanes: Lanes, scene: Scene, step: float, stride: int) -> Run:
     """Run all lanes; `step` in s must divide the sample time (ValueError otherwise)."""
-    rows = list(_Joint(lanes, scene, steps_per_sample(scene, step)).samples(stride))
-    outputs, state = (np.stack([row[i] for row in rows], axis=1) for i in range(2))
-    if not np.all(np.isfinite(state)):
-        raise ArithmeticError(f"state is not finite: step {step} s is too long for these parameters")
-    time: Array = np.arange(len(rows), dtype=float) * scene.sample_time * stride
-    return Run(time=time, command=scene.reference[scene.num_settle :: stride], outputs=outputs, state=state)
+    rows = _Joint(lanes, scene, steps_per_sample(scene, step)).samples(stride)
+    return prescribed(rows, scene, step=step, stride=stride)
 
 
 class _Joint:

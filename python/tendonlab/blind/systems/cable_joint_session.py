@@ -12,6 +12,8 @@ import numpy as np
 
 from tendonlab.blind.description import Array, Experiment
 
+from .recorded import recorded
+
 Draw = np.random.Generator
 Shape = Callable[[Array, Draw], Array]
 
@@ -74,7 +76,6 @@ def _trapezoid(x: Array, ramp: float) -> Array:
 
 
 Plan = tuple[Shape, float, int]  # motion, size, rad, and group
-Planned = tuple[str, str | None, Plan, Array]  # split, label of repeats, plan, velocity
 # the motion that is repeated, four more to fit, three held out of another kind, size or group
 RICH: tuple[Plan, ...] = (
     (moves, 0.45, 0),
@@ -106,26 +107,9 @@ def session(
     """
     plans = RICH if excitation == "rich" else POOR
     time: Array = np.arange(num_samples, dtype=float) * sample_time
-    order = [("train", plan) for plan in plans[1:5]] + [("test", plan) for plan in plans[5:]]
-    order = [order[i] for i in draw.permutation(len(order))]
-    runs: list[Planned] = [(split, None, plan, _velocity(plan, time, draw)) for split, plan in order]
-    first, fresh = _velocity(plans[0], time, draw), draw.spawn(1)[0]
-    again = [first] + [first if has_repeats else _velocity(plans[0], time, fresh) for _ in range(2)]
-    label = "A" if has_repeats else None
-    for place, velocity in zip((0, 5, 9), again, strict=True):
-        runs.insert(place, ("train", label, plans[0], velocity))
-    breaks = np.cumsum([0.0, *(num_samples * sample_time + draw.uniform(20, 90, len(runs) - 1))])
-    return [
-        Experiment(
-            name=f"run-{i + 1:02d}",
-            reference=velocity,
-            start=float(np.round(breaks[i], 1)),
-            split=split,
-            repeat=repeat,
-            add=dict(GROUPS[plan[2]]),
-        )
-        for i, (split, repeat, plan, velocity) in enumerate(runs)
-    ]
+    seconds = num_samples * sample_time
+    runs = recorded(draw, plans, lambda plan, by: _velocity(plan, time, by), seconds=seconds, has_repeats=has_repeats)
+    return [Experiment(reference=velocity, add=dict(GROUPS[group]), **named) for named, (_, _, group), velocity in runs]
 
 
 def _velocity(plan: Plan, time: Array, draw: Draw) -> Array:
