@@ -107,16 +107,22 @@ def test_excess_is_the_mean_over_measured_outputs_in_squares_of_their_floors() -
     np.testing.assert_allclose(found, [(9.0 + 1.0) / 2 - 1.0, 0.0, 3.0, 0.0], atol=1e-12)
 
 
-def test_the_probability_of_an_element_is_that_of_its_effects() -> None:
+def test_the_probability_of_an_element_is_that_of_the_sets_with_its_effects() -> None:
     info = SimpleNamespace(elements=[SimpleNamespace(name=n) for n in ("joint", "actuation", "sensor.angle")])
     of = SimpleNamespace(system=SimpleNamespace(info=info))
     chances = {"joint:stribeck": 0.3, "joint:ripple": 0.2, "actuation:offset": 0.1, "sensor.angle:bias": 0.9}
-    rows = where.elements(chances, of)  # type: ignore[arg-type]
+    sets: list[dict[str, Any]] = [
+        {"effects": ["joint:stribeck", "sensor.angle:bias"], "probability": 0.3},
+        {"effects": ["joint:ripple", "sensor.angle:bias"], "probability": 0.2},
+        {"effects": ["sensor.angle:bias"], "probability": 0.4},
+    ]
+    rows = where.elements(chances, sets, of)  # type: ignore[arg-type]
     assert [(r["element"], pytest.approx(r["probability"])) for r in rows] == [
         ("sensor.angle", 0.9), ("joint", 0.5), ("actuation", 0.1),
     ]  # fmt: skip
-    sure = where.elements({"joint:a": 0.8, "joint:b": 0.7}, of)  # type: ignore[arg-type]
-    assert sure[0] == {"element": "joint", "probability": 1.0}
+    both = [{"effects": ["joint:a", "joint:b"], "probability": 0.7}, {"effects": ["joint:a"], "probability": 0.1}]
+    together = where.elements({"joint:a": 0.8, "joint:b": 0.7}, both, of)  # type: ignore[arg-type]
+    assert together[0] == {"element": "joint", "probability": pytest.approx(0.8)}
 
 
 def test_an_error_that_sits_at_low_speed_is_a_regime_and_one_without_a_place_is_none() -> None:

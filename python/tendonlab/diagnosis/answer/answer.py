@@ -59,7 +59,7 @@ def answer(
         gap=_gap(case, stages, floor),
         where={
             "signals": where.signals(case, stages["refitted"], floor),
-            "elements": where.elements(verdict.effects, case),
+            "elements": where.elements(verdict.effects, verdict.sets, case),
             "regimes": where.regimes(case, stages["refitted"], floor, records),
         },
         effects=findings(fitter, search, verdict.effects, stages["refitted"], judged, seed),

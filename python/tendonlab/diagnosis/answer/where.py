@@ -41,12 +41,14 @@ def signals(case: Case, of: Replayed, floor: Floor) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda r: -float(r["share"]))
 
 
-def elements(probability: Mapping[str, float], case: Case) -> list[dict[str, Any]]:
-    """Probability that the cause sits in each element: that of its effects together."""
+def elements(probability: Mapping[str, float], sets: Sequence[Mapping[str, Any]], case: Case) -> list[dict[str, Any]]:
+    """Probability that the cause sits in each element: that of the `sets` which hold one of its effects, at least that
+    of its most probable effect."""
     rows = []
     for element in case.system.info.elements:
-        total = sum(p for name, p in probability.items() if name.rpartition(":")[0] == element.name)
-        rows.append({"element": element.name, "probability": float(min(1.0, total))})
+        own = {name: p for name, p in probability.items() if name.rpartition(":")[0] == element.name}
+        total = sum(entry["probability"] for entry in sets if own.keys() & set(entry["effects"]))
+        rows.append({"element": element.name, "probability": float(min(1.0, max(total, *own.values(), 0.0)))})
     return sorted(rows, key=lambda r: -float(r["probability"]))
 
 
