@@ -11,8 +11,8 @@ import pytest
 from integrate.rig import joint
 from tendonlab import _core
 from tendonlab.diagnosis.answer import next_experiments
-from tendonlab.diagnosis.answer.motions import DURATION, RATE
-from tendonlab.diagnosis.answer.next_experiments import EASE, Loop, _loop, _run, _separation, advise
+from tendonlab.diagnosis.answer.motions import DURATION, EASE, RATE
+from tendonlab.diagnosis.answer.next_experiments import Loop, _loop, _run, _separation, advise
 from tendonlab.errors import NumericalError
 
 LOOP = Loop(400.0, 40.0, "joint_angle")
@@ -20,7 +20,11 @@ LOOP = Loop(400.0, 40.0, "joint_angle")
 
 def case(kind: str = "injection", controller: Any = None, **changes: Any) -> Any:
     replay = SimpleNamespace(**{"kind": kind, "kp": 3.0, "kd": 0.5, "output": "joint_angle", **changes})
-    return SimpleNamespace(replay=replay, system=SimpleNamespace(controller=controller), measured=[0, 2])
+    spec = SimpleNamespace(column="angle (deg)", unit="deg", si_unit="rad")
+    dataset = SimpleNamespace(signals={"joint_angle": spec})
+    return SimpleNamespace(
+        replay=replay, system=SimpleNamespace(controller=controller), measured=[0, 2], dataset=dataset
+    )
 
 
 def test_a_rig_is_driven_by_the_loop_of_its_replay() -> None:
@@ -44,13 +48,20 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
             raise NumericalError("no")
         return gains[motion.words]
 
-    monkeypatch.setattr(next_experiments, "motions", lambda *_: [SimpleNamespace(words=name) for name in gains])
+    path = 1.0 + np.arange(0.0, DURATION, 1 / RATE)
+    made = [SimpleNamespace(words=name, path=path) for name in gains]
+    monkeypatch.setattr(next_experiments, "motions", lambda *_: made)
     monkeypatch.setattr(next_experiments, "_separation", separation)
     floor: Any = None
     first, second = (SimpleNamespace(added=added) for added in (("x", "both"), ("both", "y")))
     found = advise(case(), floor, first, second)  # type: ignore[arg-type]
     assert [(row["description"], row["expected_gain"]) for row in found] == [("e", 900.0), ("c", 40.0), ("a", 12.3)]
     assert found[0]["separates"] == ["x", "y"]
+    reference = found[0]["reference"]
+    assert list(reference.columns) == ["t", "angle (deg)"]
+    assert reference["angle (deg)"].iloc[0] == pytest.approx(np.degrees(1.0))  # as the logs measure it
+    assert reference["angle (deg)"].iloc[-1] == pytest.approx(np.degrees(path[-1]))
+    assert np.diff(reference["angle (deg)"])[0] < 1e-3 * np.degrees(1 / RATE)  # from rest
     assert advise(case("free"), floor, first, second) == []  # type: ignore[arg-type]
 
 

@@ -131,6 +131,7 @@ class Diagnosis(EqualByFields):
     unit of every signal and coordinate. `held_out`: one row per held-out experiment, columns nominal, refitted,
     with_effect: the gap there, pooled over outputs, in noise floors. `data`: problems of the logs, worst first, each
     with problem, signal, experiment, detail and blocks. `caveats`: what a reader must know before any number.
+    `references`: motions of `next_experiments` by file name, as `report` writes them: `t`, s, and the reference.
     `overlays`: every held-out experiment, the one that tuning leaves worst first. `split`: names under "train" and
     "test". `details`: whatever else says how it was computed. Raises ParameterError where a part of the contract is
     missing or the verdict is unknown.
@@ -161,6 +162,7 @@ class Diagnosis(EqualByFields):
     split: Mapping[str, Sequence[str]] = field(default_factory=dict)
     details: Mapping[str, Any] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict, metadata=_DRAWN)
+    references: Mapping[str, pd.DataFrame] = field(default_factory=dict, metadata=_DRAWN)
     overlays: tuple[Overlay, ...] = field(default=(), metadata=_DRAWN)
     where_map: tuple[WhereMap, ...] = field(default=(), metadata=_DRAWN)
     table: SideTable | None = field(default=None, metadata=_DRAWN)
@@ -200,7 +202,8 @@ class Diagnosis(EqualByFields):
         return ranked_effects(self, ax)
 
     def report(self, out: str | Path, *, figures: bool = True) -> Path:
-        """Write report.html, report.json and (with `figures`) each figure as PNG and SVG into folder `out`.
+        """Write report.html, report.json, the references of proposed motions (next-1.csv, …) and (with `figures`) each
+        figure as PNG and SVG into folder `out`.
 
         Returns the path of report.html. The folder is made where it does not exist."""
         from tendonlab.report import write_report

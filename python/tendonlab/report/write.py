@@ -27,7 +27,8 @@ def prepare_folder(out: str | Path) -> Path:
 
 
 def write_report(diagnosis: Diagnosis, out: Path, *, figures: bool = True) -> Path:
-    """Write report.html and report.json, and each figure as PNG and SVG if `figures`; the path of report.html.
+    """Write report.html, report.json, the references of proposed motions, and each figure as PNG and SVG if `figures`;
+    the path of report.html.
 
     Each file appears in `out` when all of them are complete: an interrupted call leaves what was there before."""
     from tendonlab.report.document import page
@@ -39,6 +40,8 @@ def write_report(diagnosis: Diagnosis, out: Path, *, figures: bool = True) -> Pa
         for name, picture in pictures.items() if figures else ():
             (folder / f"{name}.svg").write_text(picture.svg, encoding="utf-8")
             (folder / f"{name}.png").write_bytes(picture.png)
+        for name, reference in diagnosis.references.items():
+            reference.to_csv(folder / name, index=False, float_format="%.9g")
         text = json.dumps(diagnosis.to_dict(), indent=2, ensure_ascii=False, allow_nan=False)
         (folder / "report.json").write_text(text + "\n", encoding="utf-8")
         (folder / "report.html").write_text(page(diagnosis, pictures), encoding="utf-8")

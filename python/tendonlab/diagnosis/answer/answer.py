@@ -48,6 +48,7 @@ def answer(
     records = where.PortRecords(case, stages["with_effect"], judged)
     held_out = _per_experiment(case, stages, floor, judged)
     rng = np.random.default_rng(seed)
+    proposed, references = _numbered(_next(case, floor, search))
     return Diagnosis(
         dataset=case.dataset.name,
         system=case.system.kind,
@@ -72,7 +73,8 @@ def answer(
             "from_nominal": heldout.shrinkage(case, stages["nominal"], stages["with_effect"], floor, judged, rng),
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
-        next_experiments=tuple(_next(case, floor, search) + _measurements(verdict.indistinguishable)),
+        next_experiments=tuple(proposed + _measurements(verdict.indistinguishable)),
+        references=references,
         caveats=caveats(case, search.final, stages, floor, judged),
         warnings=(
             *notes.warnings(case, floor, search),
@@ -142,6 +144,12 @@ def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
     rivals = [(share[t.effect], t.fitted) for t in search.rounds[0].trials if t is not own]
     likeliest, other = max([*rivals, (share[None], search.tuned)], key=lambda pair: pair[0])
     return advise(case, floor, own.fitted, other) if likeliest > OPEN else []
+
+
+def _numbered(found: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], dict[str, pd.DataFrame]]:
+    """The proposed experiments with names in place of their references, and the references by name."""
+    references = {f"next-{k}.csv": row["reference"] for k, row in enumerate(found, start=1)}
+    return [{**row, "reference": name} for name, row in zip(references, found, strict=True)], references
 
 
 def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:

@@ -11,6 +11,7 @@ from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.system import System
 
 DURATION, RATE = 6.0, 250.0
+EASE = 0.5  # s in which a motion starts from rest
 SEEN = 0.995  # quantile of logged speeds and accelerations that a rig is taken to manage
 
 
@@ -38,6 +39,17 @@ class Reach:
     speed: float
     acceleration: float
     unit: str
+
+
+def instants() -> np.ndarray:
+    """Of the samples of a motion, s."""
+    return np.arange(0.0, DURATION, 1 / RATE)
+
+
+def eased(path: np.ndarray) -> np.ndarray:
+    """A path that leaves its first position from rest."""
+    x = np.clip(instants() / EASE, 0, 1)
+    return np.asarray(path[0] + x**2 * (3 - 2 * x) * (path - path[0]))
 
 
 def motions(case: Case, output: str) -> list[Motion]:
@@ -84,15 +96,11 @@ def seen_reach(case: Case, c: int) -> Reach:
     )
 
 
-def _time() -> np.ndarray:
-    return np.arange(0.0, DURATION, 1 / RATE)
-
-
 def _reversals(reach: Reach, place: str, kind: str, share: float, of_speed: float) -> Motion:
     """Triangles, their corners rounded to the acceleration that was seen."""
     span, speed = share * reach.travel, of_speed * reach.speed
     cycles = max(1.0, speed * DURATION / (4 * span))
-    triangle = 2 / np.pi * np.arcsin(np.sin(2 * np.pi * cycles * _time() / DURATION))
+    triangle = 2 / np.pi * np.arcsin(np.sin(2 * np.pi * cycles * instants() / DURATION))
     reached = 4 * span * cycles / DURATION
     words = f"{kind} of the {place} over ±{span:.2g} {reach.unit} at {reached:.2g} {reach.unit}/s"
     return Motion(words, reach.middle + _rounded(span * triangle, 2 * reached / reach.acceleration))
@@ -101,15 +109,15 @@ def _reversals(reach: Reach, place: str, kind: str, share: float, of_speed: floa
 def _sweep(reach: Reach, place: str) -> Motion:
     span, top = 0.3 * reach.travel, 3.0
     span = min(span, reach.speed / (2 * np.pi * top), reach.acceleration / (2 * np.pi * top) ** 2)
-    path = reach.middle + span * np.sin(2 * np.pi * (0.2 * _time() + 0.5 * (top - 0.2) * _time() ** 2 / DURATION))
+    path = reach.middle + span * np.sin(2 * np.pi * (0.2 * instants() + 0.5 * (top - 0.2) * instants() ** 2 / DURATION))
     return Motion(f"a sine sweep of the {place} from 0.2 to 3 Hz over ±{span:.2g} {reach.unit}", path)
 
 
 def _micro_motion(reach: Reach, place: str) -> Motion:
     small = 0.01 * reach.travel
-    stairs = 0.3 * reach.travel * np.round(4 / np.pi * np.arcsin(np.sin(2 * np.pi * _time() / DURATION)))
+    stairs = 0.3 * reach.travel * np.round(4 / np.pi * np.arcsin(np.sin(2 * np.pi * instants() / DURATION)))
     moved = _rounded(stairs, np.sqrt(1.2 * reach.travel / reach.acceleration) + 0.3 * reach.travel / reach.speed)
-    path = reach.middle + moved + small * np.sin(2 * np.pi * 2 * _time())
+    path = reach.middle + moved + small * np.sin(2 * np.pi * 2 * instants())
     words = f"micro motion of the {place}, ±{small:.2g} {reach.unit} at 2 Hz about several positions"
     return Motion(words, path)
 

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from tendonlab import _core
-from tendonlab.diagnosis.answer.motions import DURATION, RATE, Motion, motions
+from tendonlab.data.units import convert
+from tendonlab.diagnosis.answer.motions import Motion, eased, instants, motions
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -16,7 +18,6 @@ from tendonlab.fitting.noise import Floor
 from tendonlab.simulation.signals import linear, smooth
 
 SEPARATES = 10.0  # nats below which an experiment separates nothing
-EASE = 0.5  # s in which a motion starts from rest
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,8 @@ class Loop:
 
 
 def advise(case: Case, floor: Floor, first: Fitted, second: Fitted) -> list[dict[str, Any]]:
-    """Motions ranked by the nats that they are expected to bring between two explanations, best first; empty where the
-    rig cannot be driven in the simulator or nothing separates them."""
+    """Motions ranked by the nats that they are expected to bring between two explanations, best first, each with its
+    `reference`; empty where the rig cannot be driven in the simulator or nothing separates them."""
     loop = _loop(case)
     if loop is None:
         return []
@@ -42,8 +43,17 @@ def advise(case: Case, floor: Floor, first: Fitted, second: Fitted) -> list[dict
         except NumericalError:
             continue
         if gain > SEPARATES:
-            found.append({"description": motion.words, "separates": names, "expected_gain": round(gain, 1)})
+            row = {"description": motion.words, "separates": names, "expected_gain": round(gain, 1)}
+            found.append(row | {"reference": _reference(case, motion, loop)})
     return sorted(found, key=lambda f: -float(str(f["expected_gain"])))[:3]
+
+
+def _reference(case: Case, motion: Motion, loop: Loop) -> pd.DataFrame:
+    """What the rig is to follow, as its logs have it: `t` in s, and the column of the controller's reference, else of
+    the output, in its unit."""
+    controller = case.system.controller
+    spec = case.dataset.signals[loop.output if controller is None else controller.reference]
+    return pd.DataFrame({"t": instants(), spec.column: convert(eased(motion.path), unit=spec.si_unit, to=spec.unit)})
 
 
 def _loop(case: Case) -> Loop | None:
@@ -77,9 +87,7 @@ def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, seeds: list[tuple[s
     c = case.outputs.index(loop.output)
     axis = system.info.outputs[c].axis or 0
     shape, _, _ = _core.rigid_motion(system.kind, system.values(), system.active())
-    time = np.arange(0.0, DURATION, 1 / RATE)
-    ease = np.clip(time / EASE, 0, 1) ** 2 * (3 - 2 * np.clip(time / EASE, 0, 1))
-    path = motion.path[0] + ease * (motion.path - motion.path[0])
+    time, path = instants(), eased(motion.path)
     core = _core.Experiment(
         kind=system.kind,
         time=time.tolist(),

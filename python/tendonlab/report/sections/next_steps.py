@@ -33,5 +33,6 @@ def next_steps(diagnosis: Diagnosis) -> list[Block]:
 
 def _purpose(entry: Mapping[str, Any], kind: str) -> str:
     names = [phrase(name, kind) for name in entry.get("separates") or []]
-    parts = [separation(names) if names else "", gain_words(entry.get("expected_gain"))]
+    file = f"reference in {entry['reference']}" if entry.get("reference") else ""
+    parts = [separation(names) if names else "", gain_words(entry.get("expected_gain")), file]
     return "; ".join(part for part in parts if part)
