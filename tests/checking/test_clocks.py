@@ -11,10 +11,13 @@ NAMES = ["a", "b", "c", "d", "e"]
 STEP = 0.01
 
 
-def findings(seconds: list[list[float]], *, sd: float = 1e-4, weight: float = 1e3) -> list[Finding]:
+def findings(
+    seconds: list[list[float]], *, sd: float = 1e-4, weight: float = 1e3, gain: float = 100.0
+) -> list[Finding]:
     late = np.array(seconds)
     channels = tuple(f"angle_{k + 1}" for k in range(len(late)))
-    lags = Lags(channels, late, np.full(late.shape, sd), np.full(late.shape, weight), 0.1)
+    gains = np.full(late.shape[1], gain)
+    lags = Lags(channels, late, np.full(late.shape, sd), np.full(late.shape, weight), gains, 0.1)
     return clock_findings(lags, NAMES[: late.shape[1]], ["motor_torque"], STEP)
 
 
@@ -29,6 +32,10 @@ def test_one_experiment_that_lags_blocks(seconds: float, verb: str) -> None:
     assert found.seconds == pytest.approx(seconds)
     assert found.alternatives == ("motor_torque", "angle_1")
     assert f"angle_1 {verb} the inputs by 50 ms more" in found.detail
+
+
+def test_a_lag_that_suits_the_experiment_no_better_is_none() -> None:
+    assert findings([[0.0, 0.0, 0.05, 0.0, 0.0]], gain=40.0) == []
 
 
 def test_outputs_that_are_late_together_take_a_plural() -> None:

@@ -12,11 +12,12 @@ from tendonlab.checking.finding import PROBLEMS, Check, Finding
 from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.samples import sample_findings
-from tendonlab.checking.scales import EXPLAINED, wrong_factors
+from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.spikes import marks
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.simulation.system import System, require_system
 
+EXPLAINED = 0.5  # level of the residual beyond which the equation explains too little to tell a lag
 UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
 UNTIMED = "Signs, scales and lags could not be checked: {kind} has steady points, no time."
 UNEXPLAINED = (

@@ -15,6 +15,7 @@ LEAST = 1.5  # samples by which an experiment must lag the others
 LEAST_SHARED = 0.25  # of a sample, of a lag that all share
 RESOLVED = 0.25  # of a sample: no lag is known better
 MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
+SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others
 MIDDLE = 0.6745  # sd that half of all normal errors exceed
 ROUNDS = 3  # of common lag and scatter
 SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
@@ -32,6 +33,7 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     # nothing.
     apart = APART * np.hypot(known, np.max(scatter) * levels)
     late = (np.abs(away) > apart) & (np.abs(away) > LEAST * step) & (np.abs(away) * lags.weight > MATTERS)
+    late &= lags.gain > SUITS
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
     return [*found, *_all_late(lags, inputs, shared, total, step)]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import Logs
-from tendonlab.checking.regression import Fit
+from tendonlab.checking.regression import FREEDOM, Fit
 from tendonlab.checking.scales import ROUGH_SHARE, shares
 from tendonlab.checking.terms import Terms, terms
 
@@ -25,12 +25,14 @@ NUDGE = 0.1  # of the step of the logs, by which the column of a lag is found
 class Lags:
     """`seconds` and `sd` (channels, experiments): how far each output is behind the inputs; `channels`: the outputs;
     `weight` (channels, experiments): by how many times what the equations leave a lag of a second would change them;
-    `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
+    `gain` (experiments): nats by which the lags of its own suit an experiment better than those that most experiments
+    share; `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
 
     channels: tuple[str, ...]
     seconds: np.ndarray
     sd: np.ndarray
     weight: np.ndarray
+    gain: np.ndarray
     level: float
 
 
@@ -46,7 +48,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         at = terms(equation, moved.at(kept))
         fit = at.fit(share)
         if not np.isfinite(fit.cost):
-            return Lags(channels, late, sd, np.zeros(late.shape), np.inf)
+            return Lags(channels, late, sd, np.zeros(late.shape), np.zeros(late.shape[1]), np.inf)
         share = shares(fit.residual, logs.run[kept])
         slopes = _slopes(equation, moved, kept, channels, at)
         own, belief = _with_friction(equation, moved.at(kept), at, slopes)
@@ -55,7 +57,23 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         if np.all(np.abs(step) < CLOSE * sd):
             break
     weight = _weights(slopes / (fit.level * at.size)[:, None], logs.run[kept], late.shape[1])
-    return Lags(channels, late, sd, weight, float(fit.level[0]))
+    gain = _gain(equation, logs, kept, late, share, fit)
+    return Lags(channels, late, sd, weight, gain, float(fit.level[0]))
+
+
+def _gain(
+    equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
+) -> np.ndarray:
+    """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each."""
+    common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
+    moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
+    at = terms(equation, moved)
+    without = at.fit(share)
+    if not np.isfinite(without.cost):
+        return np.full(late.shape[1], np.inf)
+    surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
+    nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
+    return np.bincount(moved.run, nats, late.shape[1])
 
 
 def _regular(logs: Logs, most: int) -> np.ndarray:
