@@ -17,7 +17,7 @@ from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
-from tendonlab.diagnosis.answer.verdict import Levels, decide
+from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
 from tendonlab.diagnosis.discrepancy import followed, scattered
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
@@ -58,11 +58,7 @@ def answer(
         calibrated=calibration.holds(case.system.kind, runs=len(case.train)),
         replay=notes.replay(case),
         gap=_gap(case, stages, floor),
-        where={
-            "signals": where.signals(case, stages["refitted"], floor),
-            "elements": where.elements(verdict.effects, verdict.sets, case),
-            "regimes": where.regimes(case, stages["refitted"], floor, records),
-        },
+        where=_where(case, stages["refitted"], floor, records, verdict),
         effects=findings(fitter, search, verdict.effects, stages["refitted"], judged, seed),
         sets=tuple(verdict.sets),
         selected=search.selected,
@@ -91,6 +87,16 @@ def answer(
         details=notes.details(case, floor, nominal, search) | _steps(case, search, steps) | {"evidence": raw.evidence},
         seconds=seconds(),
     )
+
+
+def _where(
+    case: Case, refitted: Replayed, floor: Floor, records: where.PortRecords, verdict: Verdict
+) -> dict[str, list[dict[str, Any]]]:
+    return {
+        "signals": where.signals(case, refitted, floor),
+        "elements": where.elements(verdict.effects, verdict.sets, case),
+        "regimes": where.regimes(case, refitted, floor, records),
+    }
 
 
 def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor) -> Levels:
