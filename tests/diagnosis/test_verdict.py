@@ -8,7 +8,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
+from tendonlab.diagnosis.answer.verdict import FAR, FAR_HELD_OUT, Levels, Verdict, _group, decide, marginals
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 
 
@@ -39,7 +39,7 @@ def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(s
     assert found.probability["parameters_only"] < 0.05
 
 
-@pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 9.0)])
+@pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 3.0)])
 def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tuned: float, refitted: float) -> None:
     """A floor that is assumed, or from few repeats, may be too low: what tuning does not shrink is no parameter."""
     levels = Levels(
@@ -63,9 +63,18 @@ def test_a_simulator_without_any_error_has_no_gap(repeated: bool) -> None:
     assert decide((), (), levels).verdict == "no_gap"
 
 
-def test_where_runs_repeat_they_decide_and_not_the_plain_floor() -> None:
-    assert nothing_selected(refitted=1e6, repeated=True, tuned=1.1).verdict == "parameters_only"
+def test_where_runs_repeat_training_runs_decide_unless_held_out_ones_are_far() -> None:
+    assert nothing_selected(refitted=0.9 * FAR_HELD_OUT, repeated=True, tuned=1.1).verdict == "parameters_only"
     assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"
+    far = nothing_selected(refitted=800.0, repeated=True, tuned=0.97)  # a stop that the training runs do not reach
+    assert far.verdict == "unknown_effect"
+    assert far.probability["unknown_effect"] > 0.9
+
+
+def test_held_out_runs_that_are_far_are_no_gap_of_none() -> None:
+    levels = Levels(nominal=1.05, tuned=1.0, refitted=4.3, explained=None, left=4.3, repeated=True)
+    assert decide((), (), levels).verdict == "unknown_effect"
+    assert decide((), (), replace(levels, refitted=1.0)).verdict == "no_gap"
 
 
 @pytest.mark.cpu(10)
