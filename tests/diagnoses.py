@@ -88,3 +88,8 @@ def _locked(path: Path) -> Iterator[None]:
     with path.open("w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield
+
+
+def evidence(why: tl.Diagnosis, effect: str) -> float:
+    """Probability of an effect before calibration, which tempers the clearest evidence."""
+    return float(why.details["evidence"]["effects"][effect])

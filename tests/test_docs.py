@@ -20,7 +20,13 @@ PAGES = {named(path): path.read_text(encoding="utf-8") for path in FILES if path
 DATASETS = PAGES["docs/datasets.md"]
 TEXTS = (".py", ".pyi", ".cpp", ".hpp", ".in", ".j2", ".md", ".ipynb", ".toml", ".txt", ".cff", ".yaml", "")
 NOT_SHIPPED = [name.upper() for name in ("diagnosis", "formats", "design", "style", "core", "build")]
-DRAWN_ONLY = {"units", "overlays", "where_map", "table"}  # of a Diagnosis: for the page, not for report.json
+DRAWN_ONLY = {
+    "units",
+    "overlays",
+    "where_map",
+    "table",
+    "references",
+}  # of a Diagnosis: for the page, not for report.json
 BY_NAME = {"effects", "gap", "parameters", "noise", "rms", "held_out"}  # of report.json: keyed by names of the rig
 
 

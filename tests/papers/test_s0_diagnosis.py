@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tendonlab as tl
-from diagnoses import diagnose
+from diagnoses import diagnose, evidence
 from tendonlab.papers import s0
 from tendonlab.papers.s0 import experiments, twin
 
@@ -23,7 +23,7 @@ def test_the_withheld_load_is_the_cause_that_is_found(transmission: str) -> None
     why = diagnose(rig(transmission))
     assert why.selected == ("contact:load_dependence",)
     assert (why.effects[0].element, why.effects[0].effect) == ("contact", "load_dependence")
-    assert why.effects[0].probability > 0.8
+    assert evidence(why, "contact:load_dependence") > 0.8
     assert why.verdict == "unknown_effect"
     low, high = why.shrinkage["from_refitted"]["ci95"]
     assert 0 < low < why.shrinkage["from_refitted"]["value"] < high < 0.5
@@ -43,7 +43,7 @@ def test_the_papers_own_law_is_swapped_in_where_it_is_the_cause(transmission: st
     why = diagnose(second_twin(transmission), library=ASKED)
     assert why.verdict == "effect"
     assert why.selected == ("contact:load_and_ratio",)
-    assert why.effects[0].probability > 0.99
+    assert evidence(why, "contact:load_and_ratio") > 0.99
     assert why.shrinkage["from_refitted"]["ci95"][0] > 0.9
     truth = s0.reconstructed(transmission)
     assert why.effects[0].parameters["coulomb"]["value"] == pytest.approx(truth.F_c, rel=0.05)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tendonlab as tl
-from diagnoses import diagnose
+from diagnoses import diagnose, evidence
 from tendonlab.errors import ParameterError
 from tendonlab.papers.s3 import withheld
 
@@ -28,7 +28,7 @@ def test_what_is_withheld_is_ranked_first_and_nothing_that_is_not_there_is_named
 ) -> None:
     why, wanted = found[case], withheld(case).effect
     assert why.effects[0].name == wanted
-    assert why.effects[0].probability > 0.9
+    assert evidence(why, wanted) > 0.9
     assert wanted in why.selected
     assert set(why.selected) <= {wanted} | PRESENT
     assert why.verdict == "effect"
