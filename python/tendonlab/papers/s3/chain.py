@@ -25,6 +25,7 @@ from tendonlab.papers.s3.trajectories import Trajectory
 from tendonlab.procedures.sheath_shape import Shape
 
 TORQUE_NOISE_SD, VELOCITY_NOISE_SD = 0.15, 0.05  # N·m; deg/s
+SUCCESS = "Integration successful."  # as odeint says it
 MOST_STEPS = 100_000  # of the integrator from one sample to the next
 
 
@@ -87,7 +88,7 @@ class Chain:
                 equations.rate, np.zeros(equations.size), time, Dfun=equations.jacobian, tfirst=True, rtol=rtol,
                 atol=atol, hmax=longest_step, mxstep=MOST_STEPS, full_output=True,
             )  # fmt: skip
-        if len(time) > 1 and report["tcur"][-1] < time[-1]:
+        if len(time) > 1 and report["message"] != SUCCESS:  # what was not reached is not set: only the message tells
             raise NumericalError(f"the chain could not be integrated under {trajectory}: {report['message']}")
         end = states @ equations.stretching[-1]
         columns = {"tau_in": trajectory.torque(time), "v": states[:, 1] / DEGREE, "tau_out": end}
