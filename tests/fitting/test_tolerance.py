@@ -36,6 +36,21 @@ def test_where_no_tolerance_is_fine_enough_the_finest_is_taken(errs: None) -> No
     assert list(TOLERANCES) == sorted(TOLERANCES, reverse=True)
 
 
+def test_the_finest_that_runs_is_taken_where_errors_still_fall(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kinks of inputs forbid a finer reference: what it would tell of the finest tolerance is not known."""
+
+    def outputs(_: Any, tolerance: float) -> list[np.ndarray]:
+        if tolerance < min(TOLERANCES):
+            raise NumericalError("the step fell to 0")
+        return [tolerance * np.ones((1, 9))]
+
+    monkeypatch.setattr(
+        cases, "replace", lambda case, tolerance: SimpleNamespace(**{**vars(case), "tolerance": tolerance})
+    )
+    monkeypatch.setattr(cases, "_outputs", outputs)
+    assert fine_enough(SimpleNamespace(measured=[0]), np.full(1, 1e-30)).tolerance == min(TOLERANCES)
+
+
 def test_where_finer_steps_are_in_vain_the_loosest_of_the_best_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     """A contact that falls to either side: the error does not fall with the tolerance, and the finest ones fail."""
     errors = dict(zip(TOLERANCES, (9.0, 1.5, 1.0, 3.0, 0.0), strict=True))

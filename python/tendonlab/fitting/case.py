@@ -208,8 +208,9 @@ def fine_enough(case: Case, noise: np.ndarray) -> Case:
         errors.append(error(tolerance))
         if errors[-1] < NUMERICS_SHARE:
             return replace(case, tolerance=tolerance)
-    least = next(k for k, one in enumerate(errors) if one <= IN_VAIN * min(errors))
-    return replace(case, tolerance=tried[least])
+    best_tried = next(t for t, one in zip(tried, errors, strict=True) if one <= IN_VAIN * min(errors))
+    is_falling = best_tried == tried[-1]
+    return replace(case, tolerance=TOLERANCES[-1] if is_falling else best_tried)
 
 
 def _finest(case: Case) -> tuple[float, list[np.ndarray]]:
