@@ -108,3 +108,13 @@ def test_findings_are_plain_and_readable(right: Logs, tmp_path: Path) -> None:
     assert {"problem", "signal", "experiment", "detail", "blocks", "or", "factor"} <= set(entry)
     assert "sign" in repr(found)
     assert "<td>sign</td>" in found._repr_html_()
+
+
+@pytest.mark.parametrize("level", [0.3, 2.0, -0.3])
+def test_a_command_that_any_size_suits_is_not_blamed(level: float, tmp_path: Path) -> None:
+    """A current that only turns with the motion is dry friction to the regression, the larger the better."""
+    logs = record()
+    for _, angle, current in logs.runs.values():
+        velocity = np.gradient(np.convolve(angle, np.ones(9) / 9, "same"))
+        current[:] = level * np.sign(velocity) + 0.01 * np.random.default_rng(1).standard_normal(len(current))
+    assert not tl.check(logs.write(tmp_path)).blocks

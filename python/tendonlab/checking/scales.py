@@ -66,6 +66,9 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
+    beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
+    if _fitted(equation, fine, best.signals, beyond, share).cost < best.fit.cost + LEAST_GAIN:
+        return []  # a channel that suits at any such size is explained away, not explained
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
 
 
@@ -87,7 +90,7 @@ def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
 def _searched(equation: Equation, logs: Logs, signals: tuple[str, ...], sign: float, share: np.ndarray) -> Factor:
     """The best of factors far apart."""
     num = int(np.log(LARGEST) / np.log(RATIO))
-    values = sign * RATIO ** np.arange(-num, num + 1.0)
+    values = sign * np.concatenate([RATIO ** np.arange(-num, num + 1.0), [2.0, 0.5]])  # the latter: a usual mistake
     tried = [Factor(signals, float(v), _fitted(equation, logs, signals, v, share, STEPS)) for v in values]
     return min(tried, key=lambda f: f.fit.cost)
 
