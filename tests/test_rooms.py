@@ -20,11 +20,12 @@ CPP = ROOT / "cpp" / "tendonlab"
 
 # A module imports from its own room and from rooms before it.
 ROOMS = (
-    "_core", "version", "errors", "seed", "arguments", "progress", "mechanics", "simulation", "sweeping", "procedures",
-    "data", "fitting", "identification", "report", "checking", "diagnosis", "rehearsal", "blind", "papers", "__init__",
-    "cli", "__main__",
+    "_core", "version", "errors", "seed", "arguments", "progress", "threads", "mechanics", "simulation", "sweeping",
+    "procedures", "data", "fitting", "identification", "report", "checking", "diagnosis", "rehearsal", "blind",
+    "papers", "__init__", "cli", "__main__",
 )  # fmt: skip
-LOOSE = {"__init__", "__main__", "version", "errors", "seed", "arguments", "progress"}  # modules outside a folder
+# Modules outside a folder.
+LOOSE = {"__init__", "__main__", "version", "errors", "seed", "arguments", "progress", "threads"}
 # Imports against that order, each with its reason.
 UPWARD: dict[tuple[str, str], str] = {}
 # Rooms in which modules may need each other, each with its reason.

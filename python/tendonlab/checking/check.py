@@ -16,6 +16,7 @@ from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.spikes import marks
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.simulation.system import System, require_system
+from tendonlab.threads import with_one_blas_thread
 
 EXPLAINED = 0.5  # level of the residual beyond which the equation explains too little to tell a lag
 UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
@@ -26,6 +27,7 @@ UNEXPLAINED = (
 )
 
 
+@with_one_blas_thread
 def check(dataset: Dataset, *, system: System | None = None) -> Check:
     """Say what looks wrong with the logs of `dataset` themselves: signs, scales and units, lags, stamps, outliers,
     limits, copies. `system`: the simulator (the dataset's own unless given), whose equation of motion must hold.

@@ -22,6 +22,7 @@ from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
 from tendonlab.simulation.system import System
+from tendonlab.threads import with_one_blas_thread
 
 PLAIN = 1e-3  # relative change of the cost at which the fit of the untouched simulator's initial states ends
 FORCED = "The check of the logs found problems that mislead a diagnosis; it was made by force."
@@ -29,6 +30,7 @@ FORCED = "The check of the logs found problems that mislead a diagnosis; it was 
 log = logging.getLogger("tendonlab")
 
 
+@with_one_blas_thread
 def diagnose(
     dataset: Dataset,
     *,

@@ -28,6 +28,7 @@ from tendonlab.progress import track
 from tendonlab.seed import generator
 from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.system import System, require_system
+from tendonlab.threads import with_one_blas_thread
 
 if TYPE_CHECKING:
     from tendonlab.data import Dataset
@@ -40,6 +41,7 @@ VANISHED = 1e-2  # of its typical size, below which an added effect has vanished
 STATE_STEPS = 10  # iterations for initial states that are found anew
 
 
+@with_one_blas_thread
 def identify(
     dataset: Dataset,
     *,

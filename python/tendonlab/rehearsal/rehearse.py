@@ -28,6 +28,7 @@ from tendonlab.rehearsal.store import Store
 from tendonlab.rehearsal.tally import effect_rehearsal, false_effects, nothing_withheld, reliability
 from tendonlab.rehearsal.words import OWN_LAWS
 from tendonlab.seed import checked
+from tendonlab.threads import with_one_blas_thread
 
 SIZES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)  # gap over noise
 COLUMNS = (
@@ -37,6 +38,7 @@ COLUMNS = (
 Path_ = str | PathLike[str]
 
 
+@with_one_blas_thread
 def rehearse(
     rig: Dataset | Path_,
     *,
