@@ -118,11 +118,13 @@ def _thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     """At most 2 · _BINS samples: the smallest and the largest of each bin, in the order of time."""
     if len(time) <= 2 * _BINS:
         return time, values
-    kept: list[int] = []
-    for block in np.array_split(np.arange(len(time)), _BINS):
-        part = values[block]
-        if np.isfinite(part).any():
-            kept += sorted({int(block[np.nanargmin(part)]), int(block[np.nanargmax(part)])})
+    size = -(-len(values) // _BINS)
+    bins = np.full((-(-len(values) // size), size), np.nan)
+    bins.flat[: len(values)] = values
+    known = np.isfinite(bins)
+    extremes = np.stack([np.argmin(np.where(known, bins, np.inf), 1), np.argmax(np.where(known, bins, -np.inf), 1)], 1)
+    extremes += size * np.arange(len(bins))[:, None]
+    kept = np.unique(extremes[known.any(axis=1)])
     return time[kept], values[kept]
 
 
