@@ -28,7 +28,7 @@ def exact(torque: np.ndarray | None = None) -> Logs:
     """A sine and its derivatives; without a `torque` the command that this motion needs without friction, in A."""
     q, v, a = 0.8 * np.sin(2 * TIME), 1.6 * np.cos(2 * TIME), -3.2 * np.sin(2 * TIME)
     needed = (INERTIA * a + GRAVITY * np.sin(q)) / CONSTANT if torque is None else torque
-    driving = np.array([needed, np.gradient(needed, TIME)])
+    driving = np.array([needed, np.gradient(needed, TIME), np.zeros_like(TIME)])
     run = np.zeros(len(TIME), dtype=int)
     return Logs({"joint_angle": np.array([q, v, a])}, {"motor_torque": driving}, {}, run, TIME, 0.01, run == 0)
 

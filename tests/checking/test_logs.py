@@ -19,11 +19,16 @@ def sines(time: np.ndarray) -> np.ndarray:
     return np.array([np.sin(3 * time), 3 * np.cos(3 * time), -9 * np.sin(3 * time)])
 
 
+def driven(time: np.ndarray) -> np.ndarray:
+    """Value, rate and integral of sin(3 t)."""
+    return np.array([np.sin(3 * time), 3 * np.cos(3 * time), (1 - np.cos(3 * time)) / 3])
+
+
 @pytest.fixture
 def logs() -> Logs:
     """Two experiments of the same motion, end to end."""
     moving = {"q": np.tile(sines(CLOCK), 2), "p": 2.0 * np.tile(sines(CLOCK), 2)}
-    driving = {"u": np.tile(sines(CLOCK)[:2], 2)}
+    driving = {"u": np.tile(driven(CLOCK), 2)}
     run, time = np.repeat([0, 1], len(CLOCK)), np.tile(CLOCK, 2)
     clear = np.arange(len(time)) % 3 > 0
     return Logs(moving, driving, {"f": np.tile(sines(CLOCK)[:1], 2)}, run, time, STEP, clear)
@@ -41,7 +46,8 @@ def test_a_clock_that_runs_ten_times_too_far_makes_rates_ten_times_too_small(log
     slow = logs.scaled([TIME], 10.0)
     for k in range(3):
         np.testing.assert_allclose(slow.moving["q"][k], 10.0**k * logs.moving["q"][k])
-    np.testing.assert_allclose(slow.driving["u"][1], 10.0 * logs.driving["u"][1])
+    value, rate, travel = logs.driving["u"]
+    np.testing.assert_allclose(slow.driving["u"], [value, 10.0 * rate, travel / 10.0])
     np.testing.assert_allclose(slow.others["f"], logs.others["f"])
 
 
@@ -83,7 +89,7 @@ def test_thinned_logs_are_clear_even_and_few_enough(logs: Logs, most: int) -> No
     assert min(most, 400) / 2 <= len(thin.run) <= most
     assert thin.moving["q"].shape == (3, len(thin.run)) == (3, len(thin.time))
     np.testing.assert_allclose(thin.moving["q"], sines(thin.time))
-    np.testing.assert_allclose(thin.driving["u"], sines(thin.time)[:2])
+    np.testing.assert_allclose(thin.driving["u"], driven(thin.time))
 
 
 def test_logs_of_a_pendulum_hold_its_derivatives(tmp_path: Path) -> None:
@@ -102,8 +108,10 @@ def test_logs_of_a_pendulum_hold_its_derivatives(tmp_path: Path) -> None:
         np.testing.assert_allclose(found.moving["joint_angle"][:, own], expected, atol=0.01)
         torque = rig.signals["motor_torque"]
         assert torque.role == "input"
-        held = np.cos(found.time[own] + late - 0.5 / 250)
-        np.testing.assert_allclose(found.driving["motor_torque"][0, own], held, atol=2e-3)
+        value, _, travel = found.driving["motor_torque"][:, own]
+        seen = found.time[own] + late - 0.5 / 250
+        np.testing.assert_allclose(value, np.cos(seen), atol=2e-3)
+        np.testing.assert_allclose(travel - travel[0], np.sin(seen) - np.sin(seen[0]), atol=2e-3)
     np.testing.assert_allclose(np.diff(found.time[found.run == 0]), found.step)
 
 

@@ -1,4 +1,5 @@
-"""The check on rigs without an equation of motion, and on rigs of which one output is not understood."""
+"""The check on rigs without an equation of motion, on rigs of which one output is not understood, and on rigs of which
+a part moves as prescribed."""
 
 from __future__ import annotations
 
@@ -37,7 +38,8 @@ def found(folder: Path, system: str, fault: Fault | None) -> list[tuple[str, str
     return [(f.problem, f.place, f.factor or f.seconds or 0.0) for f in findings if f.blocks]
 
 
-@pytest.mark.parametrize("system", ["bowden_pair", "ccsrm"])
+@pytest.mark.cpu(20)  # the rigs are drawn here
+@pytest.mark.parametrize("system", ["bowden_pair", "ccsrm", "cable_joint"])
 def test_right_logs_pass(tmp_path: Path, system: str) -> None:
     assert found(tmp_path, system, None) == []
 
@@ -64,3 +66,24 @@ def test_a_wrong_sign_is_found_beside_a_tension_that_the_check_cannot_predict(tm
     [(kind, place, _)] = found(tmp_path, "ccsrm", Fault(problem="sign", signals=("joint_angle",), factor=-1.0))
     assert kind == "sign"
     assert "joint_angle" in place
+
+
+@pytest.mark.cpu(20)
+@pytest.mark.parametrize(
+    ("signal", "factor"),
+    [
+        ("cable_force_1", -1.0),
+        ("cable_force_2", 1000.0),
+        ("joint_angle", -1.0),
+        ("joint_angle", 180 / np.pi),
+        ("actuator_velocity", 2.0),
+        ("time", 1000.0),
+    ],
+)
+def test_a_wrong_channel_of_a_joint_behind_driven_nuts_is_found(tmp_path: Path, signal: str, factor: float) -> None:
+    """The nuts travel the integral of their velocity; the cables stretch by what the joint does not follow."""
+    problem = "sign" if factor < 0 else "scale"
+    [(kind, place, size)] = found(tmp_path, "cable_joint", Fault(problem=problem, signals=(signal,), factor=factor))
+    assert kind == problem
+    assert signal in place
+    assert size == pytest.approx(factor, rel=0.05)

@@ -47,8 +47,18 @@ class Balancing {
     }
     drive.pass_known(y.at.time);
     drive.pass_command(y.at.time);
-    if constexpr (stated < n) system.begin(y.at, drive);
+    if constexpr (stated < n) place(y, k);
     return y;
+  }
+  /// What is not stated is where the motion holds it; it stays where it began where an input drives it.
+  void place(Y& y, std::size_t k) {
+    if (k > 0 && systems::is_driven<System>(drive)) {
+      for (std::size_t j = stated; j < n; ++j)
+        y.at.position[j] = began.position[j], y.at.velocity[j] = began.velocity[j];
+      return;
+    }
+    system.begin(y.at, drive);
+    began = y.at;
   }
   Frame<System, double> sliding(const Y& y) const {
     Frame<System, double> frame;
@@ -68,5 +78,6 @@ class Balancing {
   const Experiment& experiment;
   Drive<double> drive;
   const Contact<System, double> contact;
+  decltype(Y::at) began{};
 };
 }  // namespace tendonlab::integrate

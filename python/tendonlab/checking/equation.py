@@ -11,7 +11,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.checking.logs import Logs
 from tendonlab.data import Dataset, Experiment
-from tendonlab.simulation.catalog import MEMORY
+from tendonlab.simulation.catalog import MEMORY, SystemInfo
 from tendonlab.simulation.system import System
 
 
@@ -19,7 +19,7 @@ from tendonlab.simulation.system import System
 class Equation:
     """The equations of a system. The first: the balance of efforts of all parts that move together. Where every axis
     was measured, one for each further axis: its own balance. One for each other output: what it should read. A system
-    without degrees of freedom has these alone."""
+    without degrees of freedom, or with an input that says how a part moves, has these alone."""
 
     dataset: Dataset
     system: System
@@ -29,6 +29,12 @@ class Equation:
         """The measured degrees of freedom and their signals."""
         known = self.dataset.signals
         return {s.axis: s.name for s in self.system.info.outputs if s.axis is not None and s.name in known}
+
+    @cached_property
+    def prescribed(self) -> tuple[str, ...]:
+        """The logged inputs that say how a part moves, in place of what would drive the part."""
+        others = {s.replaced_by for s in self.system.info.inputs}
+        return tuple(s.name for s in self.system.info.inputs if s.name in others & set(self.dataset.signals))
 
     @cached_property
     def separate(self) -> tuple[int, ...]:
@@ -49,7 +55,7 @@ class Equation:
     @cached_property
     def predicted(self) -> tuple[tuple[str, ...], ...]:
         """For each equation the signals that it predicts."""
-        if not self.axes:
+        if not self.moved:
             return tuple((name,) for name in self.others)
         inputs = tuple(s.name for s in self.system.info.inputs if s.name in self.dataset.signals)
         return (inputs, *((self.axes[j],) for j in self.separate), *((name,) for name in self.others))
@@ -57,6 +63,8 @@ class Equation:
     @cached_property
     def moved(self) -> tuple[str, ...]:
         """The axis signals whose balance the first equations are."""
+        if self.prescribed:
+            return ()
         return (*tuple(self.axes.values())[:1], *(self.axes[j] for j in self.separate))
 
     def along(self, logs: Logs) -> tuple[Stretch, ...]:
@@ -122,7 +130,8 @@ class Stretch:
     """Samples of experiments under the same conditions: `own` marks them; `rest`: the logs of the other outputs."""
 
     own: np.ndarray
-    core: _core.Experiment
+    time: np.ndarray
+    inputs: tuple[_core.Signal, ...]
     under: Conditions
     position: np.ndarray
     velocity: np.ndarray
@@ -136,20 +145,15 @@ class Stretch:
         under = equation.conditions[group[0]]
         time = logs.time[own] if len(group) == 1 else logs.step * np.arange(float(own.sum()))
         rest = np.array([logs.others[name][0, own] for name in equation.others]).reshape(-1, len(time))
-        core = _core_experiment(equation.system, logs, own, time)
-        return cls(own, core, under, *_motion(equation, logs, own, under.shape), rest)
+        inputs = _inputs(equation.system, logs, own, time)
+        return cls(own, time, inputs, under, *_motion(equation, logs, own, under.shape), rest)
 
     def without_inputs(self, system: System, given: Collection[str]) -> Stretch:
         """The same where the inputs that were `given` are 0. One that was not logged stays out: a system may be another
         one with it."""
-        info, time = system.info, self.core.time
-        still = [0.0] * info.dof
-        nothing = _core.Signal(np.array(time[:1]), np.zeros((1, 4)), False)
-        inputs = [nothing if s.name in given else _core.Signal() for s in info.inputs]
-        core = _core.Experiment(
-            kind=info.kind, time=time, inputs=inputs, loop=_core.Loop(), position=still, velocity=still
-        )
-        return replace(self, core=core)
+        nothing = _core.Signal(self.time[:1], np.zeros((1, 4)), False)
+        each = zip(system.info.inputs, self.inputs, strict=True)
+        return replace(self, inputs=tuple(nothing if s.name in given else signal for s, signal in each))
 
     def shifted(self, axis: int, by: float) -> Stretch:
         """The same with a degree of freedom elsewhere."""
@@ -163,19 +167,29 @@ class Stretch:
         for row, (parameter, by) in enumerate(nudges.items(), start=1):
             if parameter not in self.under.fixed:
                 values[row, parameter] += by
-        kind = equation.system.kind
+        info = equation.system.info
         if not equation.axes:
-            seen = np.array([self._read(kind, row)[list(equation.places)] for row in values.tolist()])
+            seen = np.array([self._read(info, row)[list(equation.places)] for row in values.tolist()])
             return np.asarray(self.rest - seen)
-        found = _core.balance(kind, values, self.under.active, self.core, self.position, self.velocity)
+        found = _core.balance(info.kind, values, self.under.active, self._core(info), self.position, self.velocity)
         missing = found["inertia"] * self.acceleration - found["effort"]
         seen = found["outputs"][:, list(equation.places)]
+        if not equation.moved:
+            return np.asarray(self.rest - seen)
         together = np.tensordot(missing, self.under.shape, axes=(1, 0))[:, None]
         return np.concatenate([together, missing[:, list(equation.separate)], self.rest - seen], axis=1)
 
-    def _read(self, kind: str, values: list[float]) -> np.ndarray:
+    def _read(self, info: SystemInfo, values: list[float]) -> np.ndarray:
         """What every output should read (outputs, samples), of a system without degrees of freedom."""
-        return np.asarray(_core.simulate(kind, values, self.under.active, self.core, [], _core.Settings())["outputs"])
+        run = _core.simulate(info.kind, values, self.under.active, self._core(info), [], _core.Settings())
+        return np.asarray(run["outputs"])
+
+    def _core(self, info: SystemInfo) -> _core.Experiment:
+        still = [0.0] * info.dof
+        return _core.Experiment(
+            kind=info.kind, time=self.time.tolist(), inputs=self.inputs, loop=_core.Loop(), position=still,
+            velocity=still,
+        )  # fmt: skip
 
 
 def _motion(
@@ -185,7 +199,7 @@ def _motion(
     stretched."""
     if not equation.axes:
         return tuple(np.zeros((3, 0, int(own.sum()))))  # type: ignore[return-value]
-    first = logs.moving[equation.moved[0]][:, own]
+    first = logs.moving[next(iter(equation.axes.values()))][:, own]
     rows = [
         logs.moving[equation.axes[j]][:, own] if j in equation.axes else share * first for j, share in enumerate(shape)
     ]
@@ -194,19 +208,20 @@ def _motion(
     return np.ascontiguousarray(position[:stated]), np.ascontiguousarray(velocity[:stated]), acceleration
 
 
-def _core_experiment(system: System, logs: Logs, own: np.ndarray, time: np.ndarray) -> _core.Experiment:
-    """The inputs, by value and rate at each sample."""
-    info = system.info
-    signals = []
-    for s in info.inputs:
-        pieces = np.zeros((len(time), 4))
-        if s.name in logs.driving:
-            pieces[:, :2] = logs.driving[s.name][:, own].T
-        signals.append(_core.Signal(time, pieces, False) if s.name in logs.driving else _core.Signal())
-    still = [0.0] * info.dof
-    return _core.Experiment(
-        kind=info.kind, time=time.tolist(), inputs=signals, loop=_core.Loop(), position=still, velocity=still
+def _inputs(system: System, logs: Logs, own: np.ndarray, time: np.ndarray) -> tuple[_core.Signal, ...]:
+    """The inputs, by value, rate and integral at each sample."""
+    names = [s.name for s in system.info.inputs]
+    return tuple(
+        _signal(time, *logs.driving[name][:, own]) if name in logs.driving else _core.Signal() for name in names
     )
+
+
+def _signal(time: np.ndarray, value: np.ndarray, rate: np.ndarray, travel: np.ndarray) -> _core.Signal:
+    """A signal of that value and rate at each instant, and of that integral up to there."""
+    step, pieces = np.diff(time), np.zeros((len(time), 4))
+    pieces[:, 0], pieces[:, 1] = value, rate
+    pieces[:-1, 2] = 3.0 * (np.diff(travel) - value[:-1] * step - 0.5 * rate[:-1] * step**2) / step**3
+    return _core.Signal(time, pieces, False)
 
 
 def _without_memory(system: System) -> list[bool]:

@@ -29,9 +29,9 @@ VELOCITIES = ("flow", "angular_speed")
 class Logs:
     """Arrays (channels, samples) by name of the signal, all experiments end to end.
 
-    `moving`: position, velocity and acceleration of each measured axis; `driving`: each input and its rate; `others`:
-    the other outputs. `run`: which experiment a sample is of; `time`: from the start of its experiment, s; `step`: s
-    from one to the next; `clear`: whether the equation can be judged there."""
+    `moving`: position, velocity and acceleration of each measured axis; `driving`: each input, its rate and its
+    integral; `others`: the other outputs. `run`: which experiment a sample is of; `time`: from the start of its
+    experiment, s; `step`: s from one to the next; `clear`: whether the equation can be judged there."""
 
     moving: dict[str, np.ndarray]
     driving: dict[str, np.ndarray]
@@ -44,9 +44,9 @@ class Logs:
     def scaled(self, signals: Sequence[str], factor: float) -> Logs:
         """The logs with `signals` divided by a factor; "time" is the clock."""
         if TIME in signals:
-            rates = factor ** np.arange(3.0)[:, None]
-            moving = {name: rows * rates for name, rows in self.moving.items()}
-            driving = {name: rows * rates[:2] for name, rows in self.driving.items()}
+            rates = float(factor) ** np.array([0.0, 1.0, 2.0, -1.0])[:, None]
+            moving = {name: rows * rates[:3] for name, rows in self.moving.items()}
+            driving = {name: rows * rates[[0, 1, 3]] for name, rows in self.driving.items()}
             return replace(self, moving=moving, driving=driving)
         return self._each(lambda name, rows: rows / factor if name in signals else rows)
 
@@ -149,7 +149,10 @@ class _Record:
         rate = step ** -np.arange(3.0)[:, None]
         moving = {name: rate * self._derivatives(name, sd, 3) for name in axes}
         inputs = [s.name for s in info.inputs if s.name in self.values]
-        driving = {name: rate[:2] * self._derivatives(name, sd, 2) for name in inputs}
+        driving = {
+            name: np.vstack([rate[:2] * self._derivatives(name, sd, 2), self._travel(name, sd, step)])
+            for name in inputs
+        }
         rest = [s.name for s in info.outputs if s.name in self.values and s.name not in axes]
         others = {name: self._derivatives(name, sd, 1) for name in rest}
         clear = self._clear(sd)
@@ -164,6 +167,12 @@ class _Record:
 
     def _derivatives(self, name: str, sd: float, num: int) -> np.ndarray:
         return np.array([smoothing.smooth(self.values[name], sd, order=order) for order in range(num)])
+
+    def _travel(self, name: str, sd: float, step: float) -> np.ndarray:
+        """The integral of a channel since the record began."""
+        from scipy.integrate import cumulative_trapezoid
+
+        return smoothing.smooth(step * cumulative_trapezoid(self.values[name], initial=0.0), sd)
 
     def _clear(self, sd: float) -> np.ndarray:
         """Away from gaps and ends."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import TIME, VELOCITIES, Logs
-from tendonlab.checking.regression import MOST_STEPS, Fit
+from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown
 from tendonlab.checking.terms import terms
 from tendonlab.fitting.noise import integrated_time
 
@@ -17,6 +17,7 @@ LARGEST, RATIO = 2.0**18, 8.0  # factors that are tried, and from one to the nex
 ROUGH, FINE = 300, 1500  # samples in the search, and in what decides
 STEPS = 6  # of a fit in the search
 ROUGH_SHARE = 0.2  # of the samples that count as independent before the residual is known
+GAUSS_NEWTON, NUDGE = 3, 1e-4  # steps to the least of a narrow valley, and the relative change that shows its slope
 REFINED = 4  # of the best, which are looked at closely
 SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, beyond which factors are looked for
 EXPLAINED = 0.7  # level of the residual beyond which an equation explains too little to judge by: half the power
@@ -98,7 +99,8 @@ def _searched(equation: Equation, logs: Logs, signals: tuple[str, ...], sign: fl
 def _refined(
     equation: Equation, logs: Logs, factor: Factor, share: np.ndarray, reach: float, accuracy: float
 ) -> Factor:
-    """The best factor within `reach` of one."""
+    """The best factor within `reach` of one. Where something stiff is stretched by a small difference of long travels,
+    its valley is too narrow for a search: there Gauss-Newton finds it, or it is that one."""
     from scipy.optimize import minimize_scalar
 
     def cost(logarithm: float) -> float:
@@ -106,8 +108,21 @@ def _refined(
 
     bounds = (-np.log(reach), np.log(reach))
     found = minimize_scalar(cost, bounds=bounds, method="bounded", options={"xatol": accuracy})
-    value = float(factor.value * np.exp(found.x))
-    return Factor(factor.signals, value, _fitted(equation, logs, factor.signals, value, share))
+    values = (factor.value, float(factor.value * np.exp(found.x)), _stepped(equation, logs, factor, share))
+    tried = [Factor(factor.signals, v, _fitted(equation, logs, factor.signals, v, share)) for v in values]
+    return min(tried, key=lambda f: f.fit.cost)
+
+
+def _stepped(equation: Equation, logs: Logs, factor: Factor, share: np.ndarray) -> float:
+    """The factor where Gauss-Newton takes its logarithm together with all unknowns."""
+    value = factor.value
+    for _ in range(GAUSS_NEWTON):
+        here, there = (terms(equation, logs.scaled(factor.signals, v)) for v in (value, value * np.exp(NUDGE)))
+        slope = (there.residual * (here.size / there.size)[:, None] - here.residual) / NUDGE
+        unknowns = (*here.unknowns, Unknown("factor", sd=np.log(RATIO)))
+        both = replace(here, columns=np.concatenate([here.columns, slope[None]]), unknowns=unknowns)
+        value = float(value * np.exp(np.clip(both.fit(share).x[-1], -np.log(RATIO), np.log(RATIO))))
+    return value
 
 
 def _fitted(

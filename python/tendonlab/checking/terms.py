@@ -52,7 +52,9 @@ def terms(equation: Equation, logs: Logs) -> Terms:
     nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items()}
     residual, *moved = equation.nudged(stretches, num, nudges)
     silent, *moved_silent = equation.nudged(
-        [s.without_inputs(equation.system, logs.driving) for s in stretches], num, nudges
+        [s.without_inputs(equation.system, set(logs.driving) - set(equation.prescribed)) for s in stretches],
+        num,
+        nudges,
     )
     zeros, stiffness = _zeros(equation, logs, stretches, residual)
     size = _size(equation, logs, residual, silent, stiffness)
@@ -122,7 +124,7 @@ def _size(
     equation: Equation, logs: Logs, residual: np.ndarray, silent: np.ndarray, stiffness: dict[str, np.ndarray]
 ) -> np.ndarray:
     """Rms of what the inputs contribute to the first equation and an axis to its own; what an output varies."""
-    sizes = [rms((residual - silent)[0])] if equation.axes else []
+    sizes = [rms((residual - silent)[0])] if equation.moved else []
     for k, name in enumerate(equation.moved[1:], start=1):
         sizes.append(rms(stiffness[name][k] * logs.moving[name][0]))
     sizes += [float(np.std(logs.others[name])) for name in equation.others]
@@ -167,7 +169,8 @@ def _default_sd(p: ParameterInfo) -> float:
 
 
 def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column]:
-    """An offset of every equation, and friction that the simulator may lack."""
+    """An offset of every equation, and friction that the simulator may lack. Of every run, where a part moves as
+    prescribed: where it began was not logged."""
     for k, unit in enumerate(size):
         parts = [("offset", np.ones(len(logs.run)), False)]
         if k < len(equation.moved):
@@ -177,6 +180,10 @@ def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column
             column = np.zeros((len(size), len(logs.run)))
             column[k] = part * unit / (rms(part) or 1.0)
             yield Unknown(name, sd=EXTRA, positive=positive), column
+        for run in np.unique(logs.run) if equation.prescribed else ():
+            column = np.zeros((len(size), len(logs.run)))
+            column[k, logs.run == run] = unit
+            yield Unknown("start of a run", sd=EXTRA), column
 
 
 def rms(x: np.ndarray) -> float:
