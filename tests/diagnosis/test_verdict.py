@@ -8,7 +8,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis.answer.verdict import FAR, FAR_HELD_OUT, Levels, Verdict, _group, decide, marginals
+from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 
 
@@ -64,7 +64,7 @@ def test_a_simulator_without_any_error_has_no_gap(repeated: bool) -> None:
 
 
 def test_where_runs_repeat_training_runs_decide_unless_held_out_ones_are_far() -> None:
-    assert nothing_selected(refitted=0.9 * FAR_HELD_OUT, repeated=True, tuned=1.1).verdict == "parameters_only"
+    assert nothing_selected(refitted=0.9 * FAR, repeated=True, tuned=1.1).verdict == "parameters_only"
     assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"
     far = nothing_selected(refitted=800.0, repeated=True, tuned=0.97)  # a stop that the training runs do not reach
     assert far.verdict == "unknown_effect"

@@ -36,11 +36,12 @@ def test_where_no_tolerance_is_fine_enough_the_finest_is_taken(errs: None) -> No
     assert list(TOLERANCES) == sorted(TOLERANCES, reverse=True)
 
 
-def test_the_finest_that_runs_is_taken_where_errors_still_fall(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("finest", TOLERANCES)
+def test_the_finest_that_runs_is_taken_where_errors_still_fall(finest: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Kinks of inputs forbid a finer reference: what it would tell of the finest tolerance is not known."""
 
     def outputs(_: Any, tolerance: float) -> list[np.ndarray]:
-        if tolerance < min(TOLERANCES):
+        if tolerance < finest:
             raise NumericalError("the step fell to 0")
         return [tolerance * np.ones((1, 9))]
 
@@ -48,7 +49,7 @@ def test_the_finest_that_runs_is_taken_where_errors_still_fall(monkeypatch: pyte
         cases, "replace", lambda case, tolerance: SimpleNamespace(**{**vars(case), "tolerance": tolerance})
     )
     monkeypatch.setattr(cases, "_outputs", outputs)
-    assert fine_enough(SimpleNamespace(measured=[0]), np.full(1, 1e-30)).tolerance == min(TOLERANCES)
+    assert fine_enough(SimpleNamespace(measured=[0]), np.full(1, 1e-30)).tolerance == finest
 
 
 def test_where_finer_steps_are_in_vain_the_loosest_of_the_best_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -203,25 +203,25 @@ def fine_enough(case: Case, noise: np.ndarray) -> Case:
         return float(np.max(np.array(rms) / noise[case.measured]))
 
     errors: list[float] = []
-    tried = [tolerance for tolerance in TOLERANCES if tolerance > reference]
+    tried = [tolerance for tolerance in TOLERANCES if tolerance > reference] or [reference]
     for tolerance in tried:
         errors.append(error(tolerance))
         if errors[-1] < NUMERICS_SHARE:
             return replace(case, tolerance=tolerance)
     best_tried = next(t for t, one in zip(tried, errors, strict=True) if one <= IN_VAIN * min(errors))
     is_falling = best_tried == tried[-1]
-    return replace(case, tolerance=TOLERANCES[-1] if is_falling else best_tried)
+    return replace(case, tolerance=max(TOLERANCES[-1], reference) if is_falling else best_tried)
 
 
 def _finest(case: Case) -> tuple[float, list[np.ndarray]]:
-    """A tolerance, and what comes nearest to the exact solution: kinks of inputs that go straight from sample to sample
-    may forbid the finest steps."""
-    for share in (100, 10):
+    """The finest tolerance that runs, and what comes nearest to the exact solution: kinks of inputs that go straight
+    from sample to sample, or parts that come to rest without friction, may forbid the finest steps."""
+    for tolerance in (TOLERANCES[-1] / 100, TOLERANCES[-1] / 10, *TOLERANCES[:0:-1]):
         try:
-            return TOLERANCES[-1] / share, _outputs(case, TOLERANCES[-1] / share)
+            return tolerance, _outputs(case, tolerance)
         except NumericalError:
             continue
-    return TOLERANCES[-1], _outputs(case, TOLERANCES[-1])
+    return TOLERANCES[0], _outputs(case, TOLERANCES[0])
 
 
 def _outputs(case: Case, tolerance: float) -> list[np.ndarray]:
