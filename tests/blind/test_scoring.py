@@ -77,6 +77,35 @@ def test_first_probability_shrinkage_and_seconds_are_those_of_the_report() -> No
     assert _compare(TRUTH, report(verdict="failed"))["shrinkage"] == 0.0
 
 
+def test_the_probability_of_the_truth_is_that_of_the_effect_and_its_twin() -> None:
+    assert _compare(TRUTH, report("joint:stribeck", "a:b", "motor:stribeck"))["true_probability"] == 0.8 + 0.2
+    assert _compare(TRUTH, report("a:b"))["true_probability"] == 0.0
+    assert _compare(TRUTH, report(verdict="failed"))["true_probability"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("draw", "selected", "covered"),
+    [
+        ({"is_documented_form": True}, ("joint:stribeck",), 0.5),
+        ({"is_documented_form": False}, ("joint:stribeck",), np.nan),  # another form has no such parameter
+        ({"is_documented_form": True}, (), np.nan),
+    ],
+)
+def test_intervals_of_a_selected_true_effect_cover_or_not(
+    draw: dict[str, Any], selected: tuple[str, ...], covered: float
+) -> None:
+    """One parameter inside its interval, by its full name, one outside, and one that nothing bounds."""
+    given = report("joint:stribeck", selected=selected)
+    given["effects"][0]["parameters"] = {
+        "static_excess": {"value": 0.1, "ci95": [0.08, 0.12]},
+        "stribeck_velocity": {"value": 0.02, "ci95": [0.01, 0.03]},
+        "shape": {"value": 2.0, "ci95": None},
+    }
+    values = {"joint_static_excess": 0.11, "static_excess": 9.0, "stribeck_velocity": 0.04, "shape": 2.0}
+    found = _compare({**TRUTH, "draw": draw, "truth": values}, given)["covered"]
+    np.testing.assert_equal(found, covered)
+
+
 CASES: dict[str, tuple[dict[str, Any], dict[str, Any] | None]] = {
     "a": ({**TRUTH, "draw": {"gap_noise": 1.0}}, report("joint:stribeck", selected=("joint:stribeck",), seconds=10.0)),
     "b": ({**TRUTH, "draw": {"gap_noise": 1.9, "repeats": False}}, report("x:y", selected=("x:y",), seconds=20.0)),

@@ -18,6 +18,7 @@ BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
 SURE = 0.8  # probability above which a report names an effect with confidence
 PAIRS = ("pair_both", "pair_one", "pair_wrong")
 FAULTS = ("fault_kind", "fault_signal")
+OF_TRUTH = ("true_probability", "covered")
 HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
 
 
@@ -134,13 +135,28 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
         return found | {"false_alarm": bool(selected) or report["verdict"] in ("effect", "unknown_effect", "failed")}
     first = names[0] if names else ""
     names_it = report["verdict"] in ("effect", "unknown_effect") and first in selected
+    there = [entry for entry, name in zip(ranked, names, strict=True) if name in right]
+    known = [e for e, n in zip(ranked, names, strict=True) if n in truth["effects"] and n in selected]
+    told = known if truth.get("draw", {}).get("is_documented_form") else []
     return found | {
+        "true_probability": min(1.0, sum(float(entry["probability"]) for entry in there)),
+        "covered": _covered(told[0], truth.get("truth", {})) if told else np.nan,
         "top1": first in right and names_it,
         "ranked_first": first in right,
         "top3": bool(right & set(names[:3])),
         "class_hit": _part(first, 2) in {_part(name, 2) for name in right},
         "element_hit": _part(first, 0) in {_part(name, 0) for name in right},
     }
+
+
+def _covered(entry: Mapping[str, Any], truth: Mapping[str, float]) -> float:
+    """Share of the parameters of an effect whose 95 % interval holds the true value; NaN where none has both."""
+    inside = []
+    for name, found in entry.get("parameters", {}).items():
+        value = truth.get(f"{entry['element']}_{name}", truth.get(name))
+        if value is not None and found["ci95"] is not None:
+            inside.append(found["ci95"][0] <= value <= found["ci95"][1])
+    return float(np.mean(inside)) if inside else float("nan")
 
 
 def _pair(right: set[str], selected: set[str], verdict: str) -> dict[str, object]:
@@ -166,7 +182,7 @@ def _shrinkage(report: Mapping[str, Any]) -> float:
 
 
 def _tables(cases: pd.DataFrame) -> Score:
-    for name in (*HITS, *PAIRS, *FAULTS, "blocked", "false_alarm", "unknown_hit", "unknown_named"):
+    for name in (*HITS, *PAIRS, *FAULTS, *OF_TRUTH, "blocked", "false_alarm", "unknown_hit", "unknown_named"):
         if name not in cases:
             cases[name] = np.nan
         cases[name] = cases[name].astype(float)
@@ -209,6 +225,8 @@ def _summary(cases: pd.DataFrame) -> dict[str, float]:
         summary[f"false alarms on {truth}"] = _mean(cases.loc[cases["truth"] == truth, "false_alarm"])
     summary["unknown recall"] = _mean(cases["unknown_hit"])
     summary[f"unknown named with P > {SURE}"] = _mean(cases["unknown_named"])
+    summary["probability of the truth"] = _mean(single["true_probability"])
+    summary["intervals that cover"] = _mean(single["covered"])
     summary["median shrinkage"] = float(single["shrinkage"].median()) if len(single) else float("nan")
     summary["seconds per case"] = _mean(cases["seconds"])
     summary["failed"] = float(cases["failed"].sum())
