@@ -1,6 +1,7 @@
 """The screen of candidates: most promising first, started at a shape of its grid."""
 
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,9 +12,11 @@ from tendonlab import _core
 from tendonlab.diagnosis.search import screen
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.case import make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Fitter
+from tendonlab.papers import s2
 
 
 def test_candidates_come_most_promising_first(fitter: Fitter, nominal: Fitted) -> None:
@@ -68,3 +71,17 @@ def test_a_candidate_that_no_simulation_bears_starts_at_half_its_typical_size(
     assert (found.gain, found.visibility, found.simulated) == (0.0, 0.0, False)
     p = nominal.system.info.parameter("actuation_offset")
     assert found.starts == ({"actuation_offset": pytest.approx(0.5 * screen._unit(fitter.case, p))},)
+
+
+def test_no_effect_of_a_motor_is_a_candidate_where_the_nuts_move_as_prescribed(tmp_path: Path) -> None:
+    """The motor of S2 idles there; gear and guides move."""
+    case = make_case(s2.write_dataset(tmp_path, s2.constants()), tolerance=1e-5)
+    assert case.idle == {"motor", "winding"}
+    base: Any = SimpleNamespace(system=case.system, added=())
+    elements = {name.partition(":")[0] for name in screen.candidates(case, base)}
+    assert "motor" not in elements
+    assert {"joint", "gear", "cable", "bushing_1"} <= elements
+
+
+def test_nothing_idles_where_a_motor_drives(twin_case: Any) -> None:
+    assert twin_case.idle == frozenset()

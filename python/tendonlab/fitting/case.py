@@ -158,6 +158,22 @@ class Case:
         )
 
     @cached_property
+    def idle(self) -> frozenset[str]:
+        """Elements that idle in every training experiment: an input prescribes how the parts move that these would
+        drive, and none of their ports moves."""
+        info = self.system.info
+        instead = {s.replaced_by for s in info.inputs if s.replaced_by}
+        if not all(instead & set(self.experiments[i].data.columns) for i in self.train):
+            return frozenset()
+        try:
+            velocities = [np.asarray(self.run(i, self.system, ports=True)["ports"])[:, 0] for i in self.train]
+        except NumericalError:
+            return frozenset()
+        moves = np.any([np.any(v != 0.0, axis=1) for v in velocities], axis=0)
+        moving = {port.element for port, does in zip(info.ports, moves, strict=True) if does}
+        return frozenset({port.element for port in info.ports} - moving)
+
+    @cached_property
     def _conditions(self) -> list[tuple[dict[int, float], dict[int, float]]]:
         """Parameters that each experiment fixes, and those it adds to; other names are covariates. Conditions of an
         effect that the simulator lacks count as well: a candidate may have it."""

@@ -58,7 +58,7 @@ def candidates(case: Case, base: Fitted, asked: Sequence[str] | None = None) -> 
         unmeasured = e.element.startswith("sensor.") and e.element.removeprefix("sensor.") not in measured
         present = e.name in base.system.effects
         named = asked is None or e.name in asked
-        if not named or e.structural or unmeasured or present:
+        if not named or e.structural or unmeasured or present or e.element in case.idle:
             return False
         if e.roles & WHOLE:
             return asked is not None and can_replace(e, base.system, base.added)
