@@ -194,6 +194,16 @@ def test_a_model_whose_derivatives_explode_names_no_rival(monkeypatch: pytest.Mo
     assert found.round.accepted is found.holder
 
 
+def test_where_derivatives_explode_without_an_effect_its_stored_contest_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bristle without dry friction: the evidence of such a model says nothing of the friction."""
+    away = place("a", -1e9)
+    away.others.exploded = True
+    monkeypatch.setattr(rivals, "_contest", lambda *_: away)
+    first = place("a", 50.0)
+    shop: Any = None
+    assert contest_each_place(FITTER, model("a", "b"), {first.key: first}, shop)[0] is first
+
+
 def test_a_model_that_fails_without_a_stored_contest_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*_: Any) -> None:
         raise NumericalError("no")

@@ -52,10 +52,14 @@ def test_a_left_out_block_is_foretold_with_the_uncertainty_of_the_others(fitter:
     assert fit.left_out[b] == pytest.approx(density, rel=1e-5)
 
 
-def test_a_fit_whose_derivatives_exploded_has_no_evidence(fitter: Fitter, twin_case: Any) -> None:
+@pytest.mark.parametrize("slope", [1e20, 1e200])  # whose square is a number, or none
+def test_a_fit_whose_derivatives_exploded_has_no_evidence(slope: float, fitter: Fitter, twin_case: Any) -> None:
     fit = replace(fitter, case=twin_case.training_on(twin_case.train[:1])).fit(twin_case.system, max_iterations=1)
     (run,) = fit.runs
-    assert replace(fit, runs=(replace(run, jacobian=1e200 * np.ones_like(run.jacobian)),)).evidence == -np.inf
+    away = replace(fit, runs=(replace(run, jacobian=slope * np.ones_like(run.jacobian)),))
+    assert away.exploded
+    assert away.evidence == -np.inf
+    assert np.all(away.left_out == -np.inf)
 
 
 def test_what_the_experiments_state_themselves_is_not_informed(fitter: Fitter, twin_case: Any) -> None:

@@ -170,12 +170,13 @@ class Fitted:
     @property
     def exploded(self) -> bool:
         """Whether the derivatives are so large that nothing follows from them."""
-        return not bool(np.all(np.abs(np.diag(self._information)) < EXPLODED))
+        known = self._information
+        return not bool(np.isfinite(known).all() and np.all(np.abs(np.diag(known)) < EXPLODED))
 
     @cached_property
     def evidence(self) -> float:
         """Laplace log evidence, up to what all models share; -inf where derivatives exploded."""
-        if not np.isfinite(self._information).all():
+        if self.exploded:
             return float("-inf")
         away = (self.x - np.array([f.mean for f in self.free])) ** 2 * self._prior
         misfit = sum(float(b.residual @ b.residual) for b in self.blocks) + sum(self._spreads)
@@ -200,7 +201,7 @@ class Fitted:
     def left_out(self) -> np.ndarray:
         """Predictive log score of each block when it is left out: of the values that the other blocks give by one
         Newton step, and of how uncertain these are. A block that alone determines a value is hard to foretell."""
-        if not np.isfinite(self._information).all():
+        if self.exploded:
             return np.full(len(self.blocks), -np.inf)
         return np.asarray(-0.5 * (self._foretold() + np.array(self._spreads)))
 

@@ -67,17 +67,20 @@ def largest_gain(places: Places) -> float:
 
 def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Workshop) -> list[Place]:
     """The place of each effect of `base`: the stored contest for this effect if its companions are the same and do no
-    better now, else a new one; the latest stored contest if the model cannot run without the effect."""
+    better now, else a new one; the latest stored contest if the model cannot run without the effect, or only so that
+    its derivatives explode."""
     contested = []
     for effect in base.added:
         place = places.get((frozenset(base.added) - {effect}, effect))
         if place is None or len(base.added) > 1:
+            stored = [stored for key, stored in places.items() if key[1] == effect]
             try:
                 place = _contest(fitter, base, effect, shop, place)
             except (NumericalError, ParameterError):
-                stored = [stored for key, stored in places.items() if key[1] == effect]
                 if not stored:
                     raise
+                place = stored[-1]
+            if stored and place.others.exploded:
                 place = stored[-1]
         contested.append(place)
     return contested

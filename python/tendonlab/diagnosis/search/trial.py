@@ -29,14 +29,16 @@ class Trial:
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
         """What `fitted`, which has `effect`, gains over `base`, which has not; rows count as in `fitted`."""
         base = base.counted(fitted.shares)
-        gains = fitted.by_experiment(_bounded(fitted.left_out - base.left_out))
-        evidence = float(_bounded(fitted.evidence - base.evidence))
+        with np.errstate(invalid="ignore"):  # infinity less infinity
+            gains = fitted.by_experiment(_bounded(fitted.left_out - base.left_out))
+            evidence = float(_bounded(np.subtract(fitted.evidence, base.evidence)))
         return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains))
 
 
 def _bounded(gains: np.ndarray | float) -> np.ndarray:
-    """Gains over a model whose derivatives exploded, which has no evidence, are large but finite."""
-    return np.clip(gains, -MOST, MOST)
+    """Gains over a model whose derivatives exploded, which has no evidence, are large but finite; of one such model
+    over another they are none."""
+    return np.asarray(np.clip(np.nan_to_num(gains, nan=0.0), -MOST, MOST))
 
 
 def doubt(gains: np.ndarray) -> float:
