@@ -1,6 +1,8 @@
 """Public functions that compute for long take one thread for linear algebra, and leave the others' choice alone."""
 
 import inspect
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 import scipy.linalg  # noqa: F401
@@ -27,6 +29,26 @@ def test_a_call_that_raises_leaves_the_threads_as_they_were() -> None:
     with threadpool_limits(limits=2, user_api="blas"):
         with pytest.raises(ValueError, match="as asked"):
             with_one_blas_thread(fail)()
+        assert _threads() == {2}
+
+
+def test_calls_that_overlap_leave_the_threads_as_they_were() -> None:
+    """The first call ends while the second, in another thread, still runs."""
+    begun, first_ended = threading.Event(), threading.Event()
+
+    def second() -> bool:
+        begun.set()
+        return first_ended.wait(10)
+
+    def first(pool: ThreadPoolExecutor) -> Future[bool]:
+        running = pool.submit(with_one_blas_thread(second))
+        assert begun.wait(10)
+        return running
+
+    with threadpool_limits(limits=2, user_api="blas"), ThreadPoolExecutor(1) as pool:
+        running = with_one_blas_thread(first)(pool)
+        first_ended.set()
+        assert running.result(timeout=10)
         assert _threads() == {2}
 
 

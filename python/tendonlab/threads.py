@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 
 def with_one_blas_thread(call: Callable[P, R]) -> Callable[P, R]:
-    """`call`, during which numpy and scipy multiply matrices in one thread."""
+    """`call`, during which numpy and scipy multiply matrices in one thread, in the whole process."""
 
     @functools.wraps(call)
     def limited(*args: P.args, **kwargs: P.kwargs) -> R:

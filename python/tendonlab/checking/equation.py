@@ -171,7 +171,9 @@ class Stretch:
         if not equation.axes:
             seen = np.array([self._read(info, row)[list(equation.places)] for row in values.tolist()])
             return np.asarray(self.rest - seen)
-        found = _core.balance(info.kind, values, self.under.active, self._core(info), self.position, self.velocity)
+        found = _core.balance(
+            info.kind, values, self.under.active, self._experiment(info), self.position, self.velocity
+        )
         missing = found["inertia"] * self.acceleration - found["effort"]
         seen = found["outputs"][:, list(equation.places)]
         if not equation.moved:
@@ -181,10 +183,11 @@ class Stretch:
 
     def _read(self, info: SystemInfo, values: list[float]) -> np.ndarray:
         """What every output should read (outputs, samples), of a system without degrees of freedom."""
-        run = _core.simulate(info.kind, values, self.under.active, self._core(info), [], _core.Settings())
+        run = _core.simulate(info.kind, values, self.under.active, self._experiment(info), [], _core.Settings())
         return np.asarray(run["outputs"])
 
-    def _core(self, info: SystemInfo) -> _core.Experiment:
+    def _experiment(self, info: SystemInfo) -> _core.Experiment:
+        """What the core is asked: these instants and inputs."""
         still = [0.0] * info.dof
         return _core.Experiment(
             kind=info.kind, time=self.time.tolist(), inputs=self.inputs, loop=_core.Loop(), position=still,
