@@ -8,6 +8,7 @@ import pytest
 
 from tendonlab.diagnosis.answer import answer
 from tendonlab.diagnosis.answer.answer import _gap, _invisible, _levels, _next, _steps
+from tendonlab.diagnosis.drift import Drift
 
 FLOOR: Any = SimpleNamespace(rms=np.array([0.5, np.nan, 2.0]), repeated=False)
 CASE: Any = SimpleNamespace(outputs=["a", "b", "c"], measured=[0, 2])
@@ -34,12 +35,13 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
     search: Any = SimpleNamespace(tuned=tuned, selected=("x",), fitter=fitter)
-    found = _levels(search, nominal, stages, floor)
+    found = _levels(search, nominal, stages, floor, None)
     assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
     assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
     assert found.explained == pytest.approx(5.0 / 8.0)
     search.selected = ()
-    none = _levels(search, nominal, stages, floor)
+    none = _levels(search, nominal, stages, floor, Drift("joint", -0.1, 0.001))
+    assert (found.drifted, none.drifted) == (1.0, 0.001)
     assert none.explained is None
     assert (none.trained, none.followed, none.scattered) == ((1.0, 0.0, 0.0) if repeated else (20.0, 0.25, 3.0))
 

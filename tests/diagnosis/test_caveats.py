@@ -10,6 +10,7 @@ import pytest
 
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.noise import Floor
 from tendonlab.simulation.records import NominalParameter
 
@@ -17,7 +18,7 @@ FLOOR = Floor(np.array([1.0]), [[]], [1.0], 0.008, repeated=True)
 
 
 def said(*, x: float = 0.0, errors: tuple[float, float, float] = (9.0, 3.0, 2.0), added: tuple[str, ...] = ("a:b",),
-         swing: float = 50.0, stated: NominalParameter | None = None) -> tuple[str, ...]:  # fmt: skip
+         swing: float = 50.0, stated: NominalParameter | None = None, drift: Drift | None = None) -> tuple[str, ...]:  # fmt: skip
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
     free: Any = SimpleNamespace(name="inertia", value=lambda x: 0.02 * float(np.exp(x)))
     final: Any = SimpleNamespace(
@@ -26,13 +27,14 @@ def said(*, x: float = 0.0, errors: tuple[float, float, float] = (9.0, 3.0, 2.0)
     time = np.linspace(0.0, 20.0 * np.pi, 4001)
     parameters = {"inertia": stated or NominalParameter(0.02, 0.002)}
     case: Any = SimpleNamespace(
+        system=SimpleNamespace(kind="two_inertia"),
         dataset=SimpleNamespace(parameters=parameters),
         measured=[0],
         outputs=["joint_angle"],
         prepared=[SimpleNamespace(measured=swing * np.sqrt(2.0) * np.sin(time)[None])],
     )
     stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
-    return caveats(case, final, stages, FLOOR, [0])
+    return caveats(case, final, stages, FLOOR, [0], drift)
 
 
 def _of(error: float) -> Replayed:
@@ -68,3 +70,10 @@ def test_a_floor_above_the_motion_is_named() -> None:
     (text,) = said(swing=0.5)
     assert text.startswith("The noise floor of joint_angle (1) exceeds its motion (rms 0.5)")
     assert said(swing=1.05) == ()
+
+
+def test_friction_that_changed_over_the_session_is_named() -> None:
+    (text,) = said(drift=Drift("contact", 0.12, 0.0004))
+    assert text.startswith("The friction of the pulley contact rose by 12 % over the session, and no effect")
+    assert text.endswith("the chance of such a trend would be 0.0004.")
+    assert said(drift=Drift("contact", 0.12, 0.04)) == ()

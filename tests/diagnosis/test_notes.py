@@ -22,7 +22,7 @@ def test_what_the_experiments_state_themselves_is_told(fitter: Fitter, twin_case
     search = Search(fitter, tuned=fitted, steps=(), rounds=())
     warning = "Not constrained by these data and held at the nominal value: gravity_torque."
     assert warning in notes.warnings(case, fitter.floor, search)
-    rows = notes.details(case, fitter.floor, fitted, search)["parameters"]
+    rows = notes.details(case, fitter.floor, fitted, search, None)["parameters"]
     assert [name for name, row in rows.items() if not row["informed"]] == ["gravity_torque"]
 
 

@@ -10,6 +10,7 @@ import tendonlab as tl
 from tendonlab.cli.demo import bundled
 from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.drift import RARE
 
 
 def nothing_selected(*, refitted: float, repeated: bool = False, tuned: float = 1.0) -> Verdict:
@@ -37,6 +38,16 @@ def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(s
     found = decide((), (), replace(near, **signs))
     assert found.verdict == "unknown_effect"
     assert found.probability["parameters_only"] < 0.05
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize("nominal", [1.05, 1e4])
+def test_friction_that_follows_the_session_is_nothing_that_the_library_has(repeated: bool, nominal: float) -> None:
+    near = Levels(nominal=nominal, tuned=1.0, refitted=1.0, explained=None, left=1.0, repeated=repeated)
+    assert decide((), (), near).verdict in ("no_gap", "parameters_only")
+    found = decide((), (), replace(near, drifted=0.1 * RARE))
+    assert found.verdict == "unknown_effect"
+    assert found.probability["unknown_effect"] > 0.5
 
 
 @pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 3.0)])

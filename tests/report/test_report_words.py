@@ -137,6 +137,15 @@ def test_no_gap_above_the_floor_is_not_said_to_lie_on_it(with_effect: Diagnosis)
     assert "the refitted simulator errs by 1.2 times the noise floor" in replace(tuned, gap=above).sentence
 
 
+def test_the_sentence_names_friction_that_changed_over_the_session(with_effect: Diagnosis) -> None:
+    nothing = replace(with_effect, verdict="unknown_effect", selected=())
+    assert nothing.sentence.startswith("A gap remains after tuning that no effect of the library explains.")
+    drift = {"element": "contact", "change": -0.072, "chance": 2e-4}
+    warmed = replace(nothing, details=nothing.details | {"drift": drift})
+    expected = "An effect is missing that the library lacks: the friction of the pulley contact fell by 7 % over"
+    assert warmed.sentence.startswith(expected)
+
+
 def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> None:
     nothing = {"from_nominal": None, "from_refitted": None}
     both = replace(with_effect, selected=("joint:stribeck", "joint:presliding"), calibrated=True, shrinkage=nothing)

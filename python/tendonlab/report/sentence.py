@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tendonlab.report.numbers import percent, probability
-from tendonlab.report.words import capital, phrases
+from tendonlab.report.words import capital, changed_friction, phrases
 
 if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
@@ -114,7 +114,11 @@ def _ties(diagnosis: Diagnosis) -> str:
 
 def _unknown(diagnosis: Diagnosis) -> str:
     if not diagnosis.selected:
-        return "A gap remains after tuning that no effect of the library explains."
+        drift = diagnosis.details.get("drift")
+        if drift is None:
+            return "A gap remains after tuning that no effect of the library explains."
+        change = changed_friction(drift["element"], drift["change"], diagnosis.system)
+        return f"An effect is missing that the library lacks: {change} over the session."
     one = len(diagnosis.selected) == 1
     effects = f"{capital(phrases(diagnosis.selected, diagnosis.system))} {'is' if one else 'are'} established"
     if not diagnosis.explained:

@@ -55,6 +55,13 @@ def phrases(names: Iterable[str], kind: str, *, last: str = "and") -> str:
     return listing((phrase(name, kind) for name in names), last=last)
 
 
+def changed_friction(element: str, change: float, kind: str) -> str:
+    """By how much, relative, the friction of an element of the system `kind` changed: "the friction of the joint fell
+    by 7 %"."""
+    where = element_words(element, kind, article=True)
+    return f"the friction of {where} {'fell' if change < 0 else 'rose'} by {100 * abs(change):.0f} %"
+
+
 def parameter_words(name: str, *, element: str = "") -> str:
     """A parameter's words, without the element where the text around already names it."""
     own = name.removeprefix(f"{element}_") if element else name

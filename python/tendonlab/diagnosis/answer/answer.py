@@ -19,6 +19,7 @@ from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
 from tendonlab.diagnosis.discrepancy import followed, scattered
+from tendonlab.diagnosis.drift import Drift, over_session
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
@@ -42,12 +43,14 @@ def answer(
     if search.selected:  # an effect that was established stands out of the floor
         floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
-    levels = _levels(search, nominal, stages, floor)
+    drift = over_session(case, search.final)
+    levels = _levels(search, nominal, stages, floor, drift)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
     records = where.PortRecords(case, stages["with_effect"], judged)
     held_out = _per_experiment(case, stages, floor, judged)
     rng = np.random.default_rng(seed)
+    how = notes.details(case, floor, nominal, search, drift) | _steps(case, search, steps)
     proposed, references = _numbered(_next(case, floor, search))
     return Diagnosis(
         dataset=case.dataset.name,
@@ -71,7 +74,7 @@ def answer(
         },
         next_experiments=tuple(proposed + _measurements(verdict.indistinguishable)),
         references=references,
-        caveats=caveats(case, search.final, stages, floor, judged),
+        caveats=caveats(case, search.final, stages, floor, judged, drift),
         warnings=(
             *notes.warnings(case, floor, search),
             *notes.not_asked(case, search, library),
@@ -84,7 +87,7 @@ def answer(
         held_out=held_out,
         table=inverse_dynamics(case, [model.system for model in search.path], judged),
         split={name: [case.experiments[i].name for i in of] for name, of in _splits(case)},
-        details=notes.details(case, floor, nominal, search) | _steps(case, search, steps) | {"evidence": raw.evidence},
+        details=how | {"evidence": raw.evidence},
         seconds=seconds(),
     )
 
@@ -99,7 +102,7 @@ def _where(
     }
 
 
-def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor) -> Levels:
+def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor, drift: Drift | None) -> Levels:
     case, doubtful = search.fitter.case, not (floor.repeated or search.selected)
     return Levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
@@ -111,6 +114,7 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
         trained=search.tuned.over_scatter(len(case.scatter)) if doubtful else 1.0,
         followed=followed(case, search.tuned) if doubtful else 0.0,
         scattered=scattered(case, search.tuned) if doubtful else 0.0,
+        drifted=drift.chance if drift and drift.tells and not search.selected else 1.0,
     )
 
 

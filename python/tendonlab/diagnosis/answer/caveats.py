@@ -8,20 +8,33 @@ import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.numbers import unit_text
+from tendonlab.report.words import capital, changed_friction
 
 PULLED = 4.0  # stated standard deviations from the stated value
 WORSE = 1.05  # ratio of held-out mean squares, above the floor, that is no accident of rounding
 
 
 def caveats(
-    case: Case, final: Fitted, stages: Mapping[str, Replayed], floor: Floor, judged: Sequence[int]
+    case: Case,
+    final: Fitted,
+    stages: Mapping[str, Replayed],
+    floor: Floor,
+    judged: Sequence[int],
+    drift: Drift | None = None,
 ) -> tuple[str, ...]:
-    """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal."""
-    return (*_pulled(case, final), *_worse(stages, floor, final.added), *_drowned(case, floor, judged))
+    """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal,
+    friction that changed over the session."""
+    return (
+        *_pulled(case, final),
+        *_worse(stages, floor, final.added),
+        *_drowned(case, floor, judged),
+        *_drifted(case, drift),
+    )
 
 
 def _pulled(case: Case, final: Fitted) -> list[str]:
@@ -63,3 +76,14 @@ def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
                 "it says decides nothing."
             )
     return said
+
+
+def _drifted(case: Case, drift: Drift | None) -> list[str]:
+    if drift is None or not drift.tells:
+        return []
+    change = changed_friction(drift.element, drift.change, case.system.kind)
+    return [
+        f"{capital(change)} over the session, and no effect of the library changes over a session: look for warming, "
+        f"wear or lost pretension. Had the runs come in a random order, the chance of such a trend would be "
+        f"{drift.chance:.1g}."
+    ]

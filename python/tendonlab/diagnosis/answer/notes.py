@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED
 from tendonlab.diagnosis.answer.verdict import Levels
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -162,7 +164,7 @@ def units(case: Case) -> dict[str, str]:
     return known | {"time": "s"}
 
 
-def details(case: Case, floor: Floor, nominal: Fitted, search: Search) -> dict[str, Any]:
+def details(case: Case, floor: Floor, nominal: Fitted, search: Search, drift: Drift | None) -> dict[str, Any]:
     """How the numbers came about."""
     return {
         "run_to_run_friction": floor.tau,
@@ -173,6 +175,7 @@ def details(case: Case, floor: Floor, nominal: Fitted, search: Search) -> dict[s
             "with_effect": search.final.mean_square,
         },
         "parameters": {f.name: _parameter(case, search.final, f.name) for f in search.final.free},
+        "drift": asdict(drift) if drift and drift.tells else None,
     }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.drift import RARE
 from tendonlab.diagnosis.search.contest import MATTERS, Round
 from tendonlab.fitting.noise import NEAR_FLOOR
 
@@ -30,7 +31,8 @@ class Levels:
     them on held-out experiments. `repeated`: whether the floor comes from repeats. Where none does and nothing was
     selected, `trained`: of the refitted simulator on the training experiments, in units of what run-to-run friction
     may leave, `followed`: the share of that which follows the motion or drifts, and `scattered`: by how much
-    friction differs from run to run."""
+    friction differs from run to run. Where nothing was selected, `drifted`: the chance of a trend of friction over the
+    session, 1 where there is none that matters."""
 
     nominal: float
     tuned: float
@@ -41,6 +43,7 @@ class Levels:
     trained: float = 1.0
     followed: float = 0.0
     scattered: float = 0.0
+    drifted: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - MATTERS
     room = _room(levels)
-    is_far = levels.repeated and not selected and levels.refitted > FAR
+    is_far = not selected and (levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR))
     at_floor = not is_far and (levels.nominal < NO_GAP or (gained < 0 < room and not selected))
     needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
@@ -93,10 +96,11 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
 
 def _room(levels: Levels) -> float:
     """By how much an error may be noise; below 0 it is none."""
+    by_chance = SOFT * float(np.log(max(levels.drifted, 1e-9) / RARE))
     if levels.repeated:
-        return min(NEAR_FLOOR - levels.tuned, FAR - levels.refitted)
+        return min(NEAR_FLOOR - levels.tuned, FAR - levels.refitted, by_chance)
     far = (FAR - levels.refitted, FAR_TRAINED - levels.trained, FAR_SCATTERED - levels.scattered)
-    return min(SOFT, *far, FOLLOWED - levels.followed)
+    return min(SOFT, *far, FOLLOWED - levels.followed, by_chance)
 
 
 def _step(x: float) -> float:

@@ -45,7 +45,7 @@ def _details(diagnosis: Diagnosis) -> list[tuple[str, str]]:
     """The known entries of `details` with their units; all others as they are."""
     rows = []
     for key, value in diagnosis.details.items():
-        if key in ("parameters", "steps", "evidence"):  # tables of their own, and what only a calibration reads
+        if key in ("parameters", "steps", "evidence", "drift"):  # said elsewhere, or only read by a calibration
             continue
         if key == "run_to_run_friction":
             rows.append(("Friction from run to run", f"differs by {numbers.percent(value)} (standard deviation)"))

@@ -1,0 +1,86 @@
+"""Whether friction follows the session: warming is found, the order of runs that differ by chance tells nothing."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.drift import LEAST, MOST_ORDERS, RARE, over_session, trend
+
+STARTS = np.array([0.0, 55.0, 99.0, 229.0, 255.0, 343.0, 388.0])
+
+
+def case(starts: Any = STARTS, elements: tuple[str, ...] = ("joint",)) -> Any:
+    parameters = [SimpleNamespace(element=element) for element in elements]
+    return SimpleNamespace(
+        train=range(len(starts)),
+        experiments=[SimpleNamespace(start=start) for start in starts],
+        scatter=tuple(((k,), 0.02) for k in range(len(elements))),
+        system=SimpleNamespace(info=SimpleNamespace(parameters=parameters)),
+    )
+
+
+def model(*factors: np.ndarray) -> Any:
+    """A fit that needs these logarithms of friction factors, behind an initial state of each run."""
+    return SimpleNamespace(initial=[(7.0, *own) for own in np.transpose(factors)])
+
+
+def warming(share: float, time: float) -> np.ndarray:
+    return np.log1p(share * np.exp(-STARTS / time))
+
+
+@pytest.mark.parametrize(("share", "time"), [(0.1, 60.0), (0.1, 200.0), (-0.2, 1000.0)])
+def test_friction_that_settles_is_found(share: float, time: float) -> None:
+    exact = warming(share, time)
+    found = over_session(case(), model(exact + 0.001 * np.random.default_rng(1).standard_normal(len(exact))))
+    assert found is not None
+    assert found.tells
+    assert found.element == "joint"
+    assert found.change == pytest.approx(np.expm1(exact[-1] - exact[0]), abs=0.015)
+
+
+def test_chance_is_the_share_of_the_orders_that_follow_a_trend_as_well() -> None:
+    """Of an exact straight line nothing but the order itself; where the runs start evenly, the reverse as well."""
+    assert trend(np.arange(7.0), np.arange(7.0))[0] == pytest.approx(2 / MOST_ORDERS)
+    chance, change = trend(STARTS, -3e-4 * STARTS)
+    assert chance == pytest.approx(1 / MOST_ORDERS)
+    assert change == pytest.approx(-3e-4 * np.ptp(STARTS))
+
+
+@pytest.mark.parametrize("num", [5, 7, 12])
+def test_chance_is_honest(num: int) -> None:
+    """Of runs that differ by chance alone, a share p has a chance of at most p."""
+    random = np.random.default_rng(num)
+    starts = np.sort(random.uniform(0.0, 600.0, num))
+    chances = np.array([trend(starts, random.standard_normal(num))[0] for _ in range(400)])
+    for p in (0.05, 0.2, 0.5):
+        assert np.mean(chances <= p) <= p + 3.0 * np.sqrt(p * (1 - p) / len(chances))
+    assert np.mean(chances) == pytest.approx(0.5, abs=0.06)
+
+
+def test_the_chance_counts_every_element_that_was_looked_at() -> None:
+    random = np.random.default_rng(0)
+    one = over_session(case(), model(warming(0.1, 60.0)))
+    two = over_session(case(elements=("motor", "joint")), model(random.normal(0.0, 0.01, 7), warming(0.1, 60.0)))
+    assert one is not None
+    assert two is not None
+    assert two.element == "joint"
+    assert two.chance == pytest.approx(2.0 * one.chance)
+
+
+def test_a_trend_too_small_to_matter_tells_nothing() -> None:
+    found = over_session(case(), model(warming(0.9 * LEAST, 100.0)))
+    assert found is not None
+    assert found.chance < RARE
+    assert not found.tells
+
+
+def test_nothing_is_found_without_starts_or_scatter() -> None:
+    factors = warming(0.1, 60.0)
+    assert over_session(case([None, *STARTS[1:]]), model(factors)) is None
+    assert over_session(case(np.zeros(7)), model(factors)) is None
+    assert over_session(case(), model(np.zeros(7))) is None
+    assert over_session(case(elements=()), SimpleNamespace(initial=[()] * 7)) is None
