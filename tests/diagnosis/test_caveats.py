@@ -17,8 +17,15 @@ from tendonlab.simulation.records import NominalParameter
 FLOOR = Floor(np.array([1.0]), [[]], [1.0], 0.008, repeated=True)
 
 
-def said(*, x: float = 0.0, errors: tuple[float, float, float] = (9.0, 3.0, 2.0), added: tuple[str, ...] = ("a:b",),
-         swing: float = 50.0, stated: NominalParameter | None = None, drift: Drift | None = None) -> tuple[str, ...]:  # fmt: skip
+def said(
+    *,
+    x: float = 0.0,
+    errors: tuple[float, float, float] = (9.0, 3.0, 2.0),
+    added: tuple[str, ...] = ("a:b",),
+    swing: float = 50.0,
+    stated: NominalParameter | None = None,
+    drift: Drift | None = None,
+) -> tuple[str, ...]:
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
     free: Any = SimpleNamespace(name="inertia", value=lambda x: 0.02 * float(np.exp(x)))
     final: Any = SimpleNamespace(

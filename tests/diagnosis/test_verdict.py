@@ -179,6 +179,13 @@ def test_verdict_probabilities_follow_the_share_that_is_explained() -> None:
     assert selected(tuned=1.0, explained=1.0, none=0.3).probability["parameters_only"] > 0.2
 
 
+def test_an_effect_that_was_established_near_the_floor_is_a_gap() -> None:
+    """A slow effect hardly changes whitened residuals: the nominal simulator looks as if it were at the floor."""
+    found = selected(nominal=1.05, tuned=1.02, explained=None, left=1.0)
+    assert found.verdict == "effect"
+    assert found.probability["effect"] > found.probability["no_gap"]
+
+
 def test_a_simulator_at_the_floor_has_no_gap() -> None:
     for nominal, tuned in ((1.1, 1.0), (1.2, 1.18)):  # below 1.15, or nothing to gain by tuning
         levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, left=1.0, repeated=True)

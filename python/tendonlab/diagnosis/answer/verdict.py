@@ -10,9 +10,10 @@ import numpy as np
 
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import RARE
-from tendonlab.diagnosis.search.contest import MATTERS, Round
+from tendonlab.diagnosis.search.contest import Round
 from tendonlab.fitting.noise import NEAR_FLOOR
 
+LOWERED = 0.05  # share of the mean square that tuning must remove to have gained anything
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
@@ -66,10 +67,10 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     """The verdict on the effects `selected` in these `rounds`, and its probabilities."""
     after = levels.tuned if levels.repeated else levels.refitted
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
-    gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - MATTERS
+    gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)
     is_far = not selected and (levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR))
-    at_floor = not is_far and (levels.nominal < NO_GAP or (gained < 0 < room and not selected))
+    at_floor = not (is_far or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     spare = max((levels.explained or 0.0) - needed, NO_GAP - levels.left)
