@@ -18,8 +18,10 @@ from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
 
 
-def trial(effect: str, gain: float, *, left_out: float = 100.0, doubt: float = 0.0, **fitted: Any) -> Any:
-    return Trial(effect, SimpleNamespace(**fitted), gain, left_out, doubt)  # type: ignore[arg-type]
+def trial(
+    effect: str, gain: float, *, left_out: float = 100.0, doubt: float = 0.0, lost: float = 0.0, **fitted: Any
+) -> Any:
+    return Trial(effect, SimpleNamespace(**fitted), gain, left_out, doubt, lost)  # type: ignore[arg-type]
 
 
 def fitter_of(*, repeated: bool, **more: Any) -> Any:
@@ -88,6 +90,7 @@ def test_a_trial_gains_what_its_model_has_over_the_one_it_extends() -> None:
     made = Trial.of("a", fitted, base)  # type: ignore[arg-type]
     assert (made.evidence_gain, made.left_out_gain, counted) == (30.0, 13.0, [(0.5,)])
     assert made.doubt == 5.0  # five times the loss of one nat
+    assert made.lost == pytest.approx(1.0 / 14.0)
 
 
 @pytest.mark.parametrize(
@@ -110,42 +113,32 @@ def test_without_repeats_an_effect_must_remove_much_of_what_is_left(
 
 
 @pytest.mark.parametrize(
-    ("base", "first", "gain", "further", "better", "worth"),
+    ("base", "first", "gain", "lost", "further", "better", "worth"),
     [
-        (1.2, 1.17, 50.0, False, True, False),  # near the floor it must matter
-        (1.2, 1.10, 50.0, False, True, True),
-        (1.2, 1.10, 29.0, False, True, False),  # and tell clearly
-        (1.2, 1.10, 50.0, False, False, False),
-        (5.0, 4.9, 11.0, False, False, True),  # far from the floor the first effect needs no halves
-        (5.0, 4.9, 50.0, True, False, False),
-        (5.0, 4.9, 50.0, True, True, True),
+        (1.2, 1.17, 50.0, 0.1, False, True, False),  # near the floor an effect must matter
+        (1.2, 1.10, 11.0, 0.1, False, True, True),
+        (1.2, 1.10, 11.0, 0.1, False, False, False),
+        (1.2, 1.17, 50.0, 0.01, False, True, True),  # or help in each experiment
+        (1.2, 1.17, 29.0, 0.01, False, True, False),  # clearly
+        (5.0, 4.9, 11.0, 0.1, False, False, True),  # far from the floor the first effect needs no halves
+        (5.0, 4.9, 50.0, 0.1, True, False, False),
+        (5.0, 4.9, 50.0, 0.1, True, True, True),
     ],
 )
 def test_near_the_floor_and_beyond_the_first_effect_halves_decide(
-    base: float, first: float, gain: float, further: bool, better: bool, worth: bool, monkeypatch: pytest.MonkeyPatch
+    base: float,
+    first: float,
+    gain: float,
+    lost: float,
+    further: bool,
+    better: bool,
+    worth: bool,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
-    monkeypatch.setattr(contest, "moved", lambda *_: 1.1)
     of: Any = SimpleNamespace(mean_square=base)
-    assert _worth_adding(fitter_of(repeated=True), of, [trial("a", gain, mean_square=first)], further=further) == worth
-
-
-@pytest.mark.parametrize(("bias", "worth"), [(1.1, False), (1.3, True)])
-def test_near_the_floor_what_moves_an_output_beyond_the_floor_matters(
-    bias: float, worth: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A bias of the second output: whitening against slow noise leaves next to nothing of its mean square."""
-    monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
-
-    def run(i: int, system: float, own: tuple[float, ...]) -> dict[str, np.ndarray]:
-        return {"outputs": np.array([[0.0, 0.0], [np.nan, np.nan], [system, system + i]])}
-
-    rms = np.array([1.0, np.nan, 0.01])
-    case = SimpleNamespace(run=run, train=(0, 1), measured=[0, 2])
-    of, found = (SimpleNamespace(mean_square=1.0, system=x, initial=[(), ()]) for x in (0.0, 0.01 * bias))
-    first: Any = Trial("a", found, 50.0, 50.0, 0.0)  # type: ignore[arg-type]
-    fitter: Any = SimpleNamespace(floor=SimpleNamespace(repeated=True, rms=rms), case=case)
-    assert _worth_adding(fitter, of, [first], further=False) == worth  # type: ignore[arg-type]
+    leader = trial("a", gain, lost=lost, mean_square=first)
+    assert _worth_adding(fitter_of(repeated=True), of, [leader], further=further) == worth
 
 
 @pytest.mark.parametrize(("noise", "better", "worth"), [(True, True, True), (True, False, False), (False, True, False)])
@@ -298,11 +291,13 @@ def test_far_behind_is_a_candidate_that_promises_little_at_tuned_and_at_believed
 
 
 def test_near_the_floor_an_effect_must_gain_more() -> None:
-    def base(mean_square: float) -> Any:
-        return SimpleNamespace(mean_square=mean_square, cost=1000.0)
+    def least(mean_square: float, cost: float) -> float:
+        base: Any = SimpleNamespace(mean_square=mean_square, cost=cost)
+        return contest._least_gain(base, DETECT)
 
-    assert contest._least_gain(base(1.2), DETECT) == contest.CLEAR.evidence > DETECT.evidence
-    assert contest._least_gain(base(1.4), DETECT) == DETECT.evidence
+    assert least(1.2, 1000.0) == contest.CLEAR.evidence > DETECT.evidence
+    assert least(1.2, 400.0) == pytest.approx(20.0)  # a twentieth of the cost matters
+    assert least(1.4, 1000.0) == DETECT.evidence
 
 
 @pytest.mark.parametrize("error", [NumericalError, ParameterError])

@@ -26,9 +26,9 @@ TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows 
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 TWIN = 3.0  # nats within which two effects say the same of these data
 FURTHER_SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove without repeats
-CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # near the floor, which repeats tell only so well
-MATTERS = 0.04  # there, share of the whitened mean square that an effect must remove, or else
-MOVES = 1.2  # noise floors by which it must move an output, rms: whitening takes most of what is slow for slow noise
+MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
+CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
+LOST = 0.02  # and the share of its left-out gain that it may lose in single experiments: what helps in each is there
 MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this share of the acceptance bar
 
 
@@ -122,40 +122,23 @@ def _behind(chosen: Sequence[Screened], believed: Sequence[Screened]) -> list[Sc
 
 def _least_gain(base: Fitted, bar: Bar) -> float:
     """Nats that an effect must at least gain to be worth adding to `base`."""
-    return max(bar.evidence, CLEAR.evidence) if base.mean_square < NEAR_FLOOR else bar.evidence
+    near = min(CLEAR.evidence, MATTERS * base.cost) if base.mean_square < NEAR_FLOOR else 0.0
+    return max(bar.evidence, near)
 
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:
-    """Near the floor, which a few repeats determine to a few per cent, an effect must tell clearly, and matter. Without
-    repeats it must explain enough, or leave what may be noise. Near the floor, beyond the first effect and where it
-    explains little, it must predict experiments that it was not fitted to."""
+    """Near the floor, which a few repeats determine to a few per cent, an effect must remove a share of the error that
+    matters, or tell clearly and in each experiment. Without repeats it must explain enough, or leave what may be noise.
+    Near the floor, beyond the first effect and where it explains little, it must predict experiments that it was not
+    fitted to."""
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
-    if near_floor and not (CLEAR.passed(trials[0]) and _matters(fitter, base, first)):
+    is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST
+    if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
     enough = fitter.floor.repeated or explains_enough(base, trials)
     if not (enough or may_be_noise(fitter.case, first)):
         return False
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
-
-
-def _matters(fitter: Fitter, base: Fitted, extended: Fitted) -> bool:
-    """Whether `extended` leaves clearly less than `base`, or moves an output by more than its noise floor."""
-    if extended.mean_square < (1.0 - MATTERS) * base.mean_square:
-        return True
-    return moved(fitter, base, extended) > MOVES
-
-
-def moved(fitter: Fitter, base: Fitted, extended: Fitted) -> float:
-    """Rms difference of what two models say of the training experiments, in noise floors, of the output where it is
-    largest."""
-    case = fitter.case
-
-    def outputs(model: Fitted) -> np.ndarray:
-        runs = [case.run(i, model.system, own) for i, own in zip(case.train, model.initial, strict=True)]
-        return np.concatenate([run["outputs"][case.measured] for run in runs], axis=1)
-
-    rms = np.sqrt(np.mean(np.square(outputs(extended) - outputs(base)), axis=1))
-    return float(np.max(rms / fitter.floor.rms[case.measured]))
 
 
 def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:

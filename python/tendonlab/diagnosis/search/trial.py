@@ -17,13 +17,15 @@ FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 
 @dataclass(frozen=True)
 class Trial:
-    """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain."""
+    """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain, `lost`
+    what experiments that are foretold worse lose, as a share of what the others gain."""
 
     effect: str
     fitted: Fitted
     evidence_gain: float
     left_out_gain: float
     doubt: float
+    lost: float = 0.0
 
     @classmethod
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
@@ -32,7 +34,8 @@ class Trial:
         with np.errstate(invalid="ignore"):  # infinity less infinity
             gains = fitted.by_experiment(_bounded(fitted.left_out - base.left_out))
             evidence = float(_bounded(np.subtract(fitted.evidence, base.evidence)))
-        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains))
+        lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
+        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost)
 
 
 def _bounded(gains: np.ndarray | float) -> np.ndarray:
