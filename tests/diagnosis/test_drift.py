@@ -55,10 +55,10 @@ def test_chance_is_honest(num: int) -> None:
     """Of runs that differ by chance alone, a share p has a chance of at most p."""
     random = np.random.default_rng(num)
     starts = np.sort(random.uniform(0.0, 600.0, num))
-    chances = np.array([trend(starts, random.standard_normal(num))[0] for _ in range(400)])
+    chances = np.array([trend(starts, random.standard_normal(num))[0] for _ in range(150)])
     for p in (0.05, 0.2, 0.5):
         assert np.mean(chances <= p) <= p + 3.0 * np.sqrt(p * (1 - p) / len(chances))
-    assert np.mean(chances) == pytest.approx(0.5, abs=0.06)
+    assert np.mean(chances) == pytest.approx(0.5, abs=0.08)
 
 
 def test_the_chance_counts_every_element_that_was_looked_at() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis.answer.verdict import FAR, Levels, Verdict, _group, decide, marginals
+from tendonlab.diagnosis.answer.verdict import FAR, PARTLY, Levels, Verdict, _group, decide, marginals
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import RARE
 
@@ -177,6 +177,15 @@ def test_verdict_probabilities_follow_the_share_that_is_explained() -> None:
     assert selected(explained=0.2).probability["unknown_effect"] > 0.95
     assert selected(explained=1.0, none=0.3).probability["parameters_only"] < 1e-3  # tuning does not reach the floor
     assert selected(tuned=1.0, explained=1.0, none=0.3).probability["parameters_only"] > 0.2
+
+
+@pytest.mark.parametrize(("repeated", "probability"), [(True, PARTLY * 0.99), (False, 0.99)])
+def test_with_repeats_what_explains_a_part_only_may_imitate_the_unknown(repeated: bool, probability: float) -> None:
+    partly = selected(explained=0.2, repeated=repeated)
+    assert partly.verdict == "unknown_effect"
+    assert partly.effects["a"] == pytest.approx(probability, rel=0.05)
+    assert partly.sets[0] == {"effects": ["a"], "probability": pytest.approx(probability, rel=0.05)}
+    assert selected(explained=1.0, repeated=repeated).effects["a"] > 0.95
 
 
 def test_an_effect_that_was_established_near_the_floor_is_a_gap() -> None:

@@ -146,6 +146,16 @@ def test_the_sentence_names_friction_that_changed_over_the_session(with_effect: 
     assert warmed.sentence.startswith(expected)
 
 
+def test_what_may_imitate_the_unknown_is_not_called_established(with_effect: Diagnosis) -> None:
+    doubtful = tuple(replace(finding, probability=0.1) for finding in with_effect.effects)
+    partly = replace(with_effect, verdict="unknown_effect", explained=0.32)
+    assert "Stribeck friction at the joint is established and explains 32 % of" in partly.sentence
+    assert replace(partly, effects=doubtful).sentence.startswith(
+        "The library explains only a part of the gap. Stribeck friction at the joint helps on the training experiments "
+        "and explains 32 % of the excess error; it may only imitate what is unknown."
+    )
+
+
 def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> None:
     nothing = {"from_nominal": None, "from_refitted": None}
     both = replace(with_effect, selected=("joint:stribeck", "joint:presliding"), calibrated=True, shrinkage=nothing)

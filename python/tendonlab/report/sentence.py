@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
 
 ON_FLOOR = 1.1  # noise floors of held-out error that read as the floor itself
+EVEN = 0.5  # probability below which what was selected is not called established
 _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five"}
 
 
@@ -114,15 +115,25 @@ def _ties(diagnosis: Diagnosis) -> str:
 
 def _unknown(diagnosis: Diagnosis) -> str:
     if not diagnosis.selected:
-        drift = diagnosis.details.get("drift")
-        if drift is None:
-            return "A gap remains after tuning that no effect of the library explains."
-        change = changed_friction(drift["element"], drift["change"], diagnosis.system)
-        return f"An effect is missing that the library lacks: {change} over the session."
+        return _nothing_found(diagnosis)
     one = len(diagnosis.selected) == 1
-    effects = f"{capital(phrases(diagnosis.selected, diagnosis.system))} {'is' if one else 'are'} established"
+    shares = [finding.probability for finding in diagnosis.effects if finding.name in diagnosis.selected]
+    if max(shares, default=1.0) >= EVEN:
+        found, rest = f"{'is' if one else 'are'} established", "the rest is unknown"
+    else:
+        found = f"{'helps' if one else 'help'} on the training experiments"
+        rest = f"{'it' if one else 'they'} may only imitate what is unknown"
+    effects = f"{capital(phrases(diagnosis.selected, diagnosis.system))} {found}"
     if not diagnosis.explained:
         share = f"but {'explains' if one else 'explain'} nothing of the excess error on held-out experiments"
     else:
         share = f"and {'explains' if one else 'explain'} {percent(diagnosis.explained)} of the excess error"
-    return f"The library explains only a part of the gap. {effects} {share}; the rest is unknown."
+    return f"The library explains only a part of the gap. {effects} {share}; {rest}."
+
+
+def _nothing_found(diagnosis: Diagnosis) -> str:
+    drift = diagnosis.details.get("drift")
+    if drift is None:
+        return "A gap remains after tuning that no effect of the library explains."
+    change = changed_friction(drift["element"], drift["change"], diagnosis.system)
+    return f"An effect is missing that the library lacks: {change} over the session."

@@ -18,6 +18,7 @@ NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at th
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
+PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 SOFT, SAME_GROUP = 0.05, 0.2
 
 
@@ -90,7 +91,10 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
         verdict = "effect" if spare >= 0 else "unknown_effect"
     weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)
     total = sum(weight.values())
-    effects, sets = marginals(rounds)
+    is_whole = 1.0
+    if selected and levels.repeated:  # what explains a part only may imitate what is not known
+        is_whole = weight["effect"] / (weight["effect"] + weight["unknown_effect"])
+    effects, sets = marginals(rounds, there=is_whole + (1.0 - is_whole) * PARTLY)
     groups = [group for contest in rounds if (group := _group(contest))]
     return Verdict(verdict, {k: v / total for k, v in weight.items()}, effects, sets, groups)
 
@@ -108,8 +112,9 @@ def _step(x: float) -> float:
     return float(1.0 / (1.0 + np.exp(-np.clip(x / SOFT, -50, 50))))
 
 
-def marginals(rounds: Sequence[Round]) -> tuple[dict[str, float], list[dict[str, Any]]]:
-    """Probability of each effect, given the other selected ones, and of sets of effects.
+def marginals(rounds: Sequence[Round], *, there: float = 1.0) -> tuple[dict[str, float], list[dict[str, Any]]]:
+    """Probability of each effect, given the other selected ones, and of sets of effects. `there`: probability that what
+    was selected is no imitation of something unknown.
 
     An effect that was not selected counts only as far as the selected ones are the cause."""
     chosen = [contest.probability[contest.accepted.effect] if contest.accepted else 1.0 for contest in rounds]
@@ -119,11 +124,12 @@ def marginals(rounds: Sequence[Round]) -> tuple[dict[str, float], list[dict[str,
         others = float(np.prod(chosen[:k] + chosen[k + 1 :]))
         for name, p in contest.probability.items():
             if name is not None:
-                effects[name] = min(1.0, effects.get(name, 0.0) + (p if contest.accepted else others * p))
+                more = there * (p if contest.accepted else others * p)
+                effects[name] = min(1.0, effects.get(name, 0.0) + more)
             together = [*contest.base, *([name] if name is not None else [])]
             is_own = contest.accepted is not None and name == contest.accepted.effect
             if together and not (is_own and k + 1 < len(rounds)):  # all that were selected together count once
-                sets.append({"effects": together, "probability": others * p})
+                sets.append({"effects": together, "probability": there * others * p})
     sets.sort(key=lambda s: -float(s["probability"]))
     return effects, [s for s in sets if s["probability"] > 1e-4][:12]
 
