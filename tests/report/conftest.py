@@ -229,10 +229,13 @@ def parameters_only() -> Diagnosis:
 
 
 def unknown_effect() -> Diagnosis:
+    selected = ("joint:presliding", "joint:load_dependence")
+    found = effect().effects
     return replace(
         effect(),
         verdict="unknown_effect",
-        selected=("joint:presliding", "joint:load_dependence"),
+        selected=selected,
+        effects=tuple(replace(finding, probability=0.9) if finding.name in selected else finding for finding in found),
         explained=0.71,
         verdict_probability={
             "data_fault": 0.0,
