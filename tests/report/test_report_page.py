@@ -279,4 +279,8 @@ def test_an_element_is_named_in_words_only_where_it_is_likely(with_effect: Diagn
     unsure = replace(with_effect, where={**with_effect.where, "elements": elements})
     assert "most likely comes from" not in read(unsure, tmp_path)[0]
     assert "The remaining error is largest" in read(unsure, tmp_path)[0]
+    none = [{"signal": "joint_angle", "share": 0.0}, {"signal": "motor_angle", "share": 0.0}]
+    at_floor = read(replace(unsure, where={**unsure.where, "signals": none}), tmp_path)[0]
+    assert "On held-out experiments no output errs beyond its noise floor." in at_floor
+    assert "is largest" not in at_floor
     assert "most likely comes from" in read(with_effect, tmp_path)[0]
