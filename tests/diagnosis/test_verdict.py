@@ -188,6 +188,17 @@ def test_with_repeats_what_explains_a_part_only_may_imitate_the_unknown(repeated
     assert selected(explained=1.0, repeated=repeated).effects["a"] > 0.95
 
 
+@pytest.mark.parametrize("signs", [{"trained": 1.2 * FAR_TRAINED}, {"followed": 1.2 * FOLLOWED}])
+def test_what_selected_effects_leave_must_be_noise(signs: dict[str, float]) -> None:
+    """A motor that fades looks like a gain error, which explains most of the held-out gap and leaves no noise."""
+    levels = Levels(nominal=50.0, tuned=20.0, refitted=20.0, explained=0.9, left=3.0, repeated=False)
+    rounds = (contest((), "a", a=0.99, none=0.01),)
+    assert decide(rounds, ("a",), levels).verdict == "effect"
+    found = decide(rounds, ("a",), replace(levels, **signs))
+    assert found.verdict == "unknown_effect"
+    assert found.probability["effect"] < 0.3
+
+
 def test_an_effect_that_was_established_near_the_floor_is_a_gap() -> None:
     """A slow effect hardly changes whitened residuals: the nominal simulator looks as if it were at the floor."""
     found = selected(nominal=1.05, tuned=1.02, explained=None, left=1.0)

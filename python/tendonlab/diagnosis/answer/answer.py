@@ -103,7 +103,7 @@ def _where(
 
 
 def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor, drift: Drift | None) -> Levels:
-    case, doubtful = search.fitter.case, not (floor.repeated or search.selected)
+    case, final, doubtful = search.fitter.case, search.final, not floor.repeated
     return Levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
@@ -111,9 +111,9 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
         explained=heldout.explained(stages["refitted"], stages["with_effect"], floor) if search.selected else None,
         left=heldout.level(stages["with_effect"], floor),
         repeated=floor.repeated,
-        trained=search.tuned.over_scatter(len(case.scatter)) if doubtful else 1.0,
-        followed=followed(case, search.tuned) if doubtful else 0.0,
-        scattered=scattered(case, search.tuned) if doubtful else 0.0,
+        trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
+        followed=followed(case, final) if doubtful else 0.0,
+        scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
         drifted=drift.chance if drift and drift.tells and not search.selected else 1.0,
     )
 

@@ -30,11 +30,11 @@ class Levels:
     refitted simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out
     experiments, which decides where nothing repeats; where runs do, it must not be far. `explained`: share of the
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
-    them on held-out experiments. `repeated`: whether the floor comes from repeats. Where none does and nothing was
-    selected, `trained`: of the refitted simulator on the training experiments, in units of what run-to-run friction
-    may leave, `followed`: the share of that which follows the motion or drifts, and `scattered`: by how much
-    friction differs from run to run. Where nothing was selected, `drifted`: the chance of a trend of friction over the
-    session, 1 where there is none that matters."""
+    them on held-out experiments. `repeated`: whether the floor comes from repeats. Where none does, `trained`: of the
+    final model on the training experiments, in units of what run-to-run friction may leave, and `followed`: the share
+    of that which follows the motion or drifts. Where nothing was selected, `scattered`: by how much friction differs
+    from run to run, where nothing repeats; and `drifted`: the chance of a trend of friction over the session, 1 where
+    there is none that matters."""
 
     nominal: float
     tuned: float
@@ -74,7 +74,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     at_floor = not (is_far or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
-    spare = max((levels.explained or 0.0) - needed, NO_GAP - levels.left)
+    spare = min(_noise_room(levels), max((levels.explained or 0.0) - needed, NO_GAP - levels.left))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
@@ -104,8 +104,13 @@ def _room(levels: Levels) -> float:
     by_chance = SOFT * float(np.log(max(levels.drifted, 1e-9) / RARE))
     if levels.repeated:
         return min(NEAR_FLOOR - levels.tuned, FAR - levels.refitted, by_chance)
-    far = (FAR - levels.refitted, FAR_TRAINED - levels.trained, FAR_SCATTERED - levels.scattered)
-    return min(SOFT, *far, FOLLOWED - levels.followed, by_chance)
+    return min(SOFT, _noise_room(levels), FAR - levels.refitted, FAR_SCATTERED - levels.scattered, by_chance)
+
+
+def _noise_room(levels: Levels) -> float:
+    """Share by which what the final model leaves of the training experiments keeps clear of what is no noise, where
+    nothing repeats."""
+    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - levels.followed / FOLLOWED)
 
 
 def _step(x: float) -> float:
