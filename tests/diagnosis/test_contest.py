@@ -116,10 +116,13 @@ def test_without_repeats_an_effect_must_remove_much_of_what_is_left(
     ("base", "first", "gain", "lost", "further", "better", "worth"),
     [
         (1.2, 1.17, 50.0, 0.1, False, True, False),  # near the floor an effect must matter
-        (1.2, 1.10, 11.0, 0.1, False, True, True),
-        (1.2, 1.10, 11.0, 0.1, False, False, False),
-        (1.2, 1.17, 50.0, 0.01, False, True, True),  # or help in each experiment
-        (1.2, 1.17, 29.0, 0.01, False, True, False),  # clearly
+        (1.2, 1.10, 11.0, 0.01, False, True, True),
+        (1.2, 1.10, 11.0, 0.01, False, False, False),
+        (1.2, 1.10, 11.0, 0.1, False, True, False),  # and help in each experiment
+        (1.2, 1.17, 50.0, 0.01, False, True, True),  # or tell clearly
+        (1.2, 1.17, 29.0, 0.01, False, True, False),
+        (2.4, 1.4, 500.0, 0.1, False, True, False),  # not far above it an effect must help in each experiment
+        (2.4, 1.4, 500.0, 0.01, False, False, True),
         (5.0, 4.9, 11.0, 0.1, False, False, True),  # far from the floor the first effect needs no halves
         (5.0, 4.9, 50.0, 0.1, True, False, False),
         (5.0, 4.9, 50.0, 0.1, True, True, True),

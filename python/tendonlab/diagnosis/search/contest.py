@@ -28,7 +28,8 @@ TWIN = 3.0  # nats within which two effects say the same of these data
 FURTHER_SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove without repeats
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
-LOST = 0.02  # and the share of its left-out gain that it may lose in single experiments: what helps in each is there
+LOST = 0.02  # share of its left-out gain that it may lose in single experiments: what helps in each is there
+FIRM = 2.5  # mean square below which a floor from few repeats may be too low: 63 right effects lost 1.6 % at most there
 MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this share of the acceptance bar
 
 
@@ -127,11 +128,13 @@ def _least_gain(base: Fitted, bar: Bar) -> float:
 
 
 def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:
-    """Near the floor, which a few repeats determine to a few per cent, an effect must remove a share of the error that
-    matters, or tell clearly and in each experiment. Without repeats it must explain enough, or leave what may be noise.
-    Near the floor, beyond the first effect and where it explains little, it must predict experiments that it was not
-    fitted to."""
+    """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
+    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
+    Without repeats it must explain enough, or leave what may be noise. Near the floor, beyond the first effect and
+    where it explains little, it must predict experiments that it was not fitted to."""
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
+    if fitter.floor.repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
+        return False
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
