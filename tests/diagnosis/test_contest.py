@@ -139,9 +139,19 @@ def test_near_the_floor_and_beyond_the_first_effect_halves_decide(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
-    of: Any = SimpleNamespace(mean_square=base)
+    of: Any = SimpleNamespace(mean_square=base, runs=range(7))
     leader = trial("a", gain, lost=lost, mean_square=first)
     assert _worth_adding(fitter_of(repeated=True), of, [leader], further=further) == worth
+
+
+@pytest.mark.parametrize(("num", "worth"), [(4, False), (5, True)])
+def test_that_an_effect_helps_in_each_of_few_experiments_says_little(
+    num: int, worth: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
+    of: Any = SimpleNamespace(mean_square=1.2, runs=range(num))
+    leader = trial("a", 50.0, lost=0.0, mean_square=1.17)
+    assert _worth_adding(fitter_of(repeated=True), of, [leader], further=False) == worth
 
 
 @pytest.mark.parametrize(("noise", "better", "worth"), [(True, True, True), (True, False, False), (False, True, False)])
@@ -150,7 +160,7 @@ def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
     monkeypatch.setattr(contest, "may_be_noise", lambda *_: noise)
-    of: Any = SimpleNamespace(mean_square=6.6)
+    of: Any = SimpleNamespace(mean_square=6.6, runs=range(7))
     trials = [trial("a", 50.0, mean_square=4.9), trial("b", 49.0, mean_square=5.0)]
     assert _worth_adding(fitter_of(repeated=False, case=None), of, trials, further=False) == worth
 

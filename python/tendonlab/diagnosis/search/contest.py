@@ -29,6 +29,7 @@ FURTHER_SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
 LOST = 0.02  # share of its left-out gain that it may lose in single experiments: what helps in each is there
+ENOUGH = 5  # experiments of which it says something that an effect helps in each
 FIRM = 2.5  # mean square below which a floor from few repeats may be too low: 63 right effects lost 1.6 % at most there
 MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this share of the acceptance bar
 
@@ -135,7 +136,7 @@ def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, furt
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
     if fitter.floor.repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
-    is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST
+    is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and len(base.runs) >= ENOUGH
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
     enough = fitter.floor.repeated or explains_enough(base, trials)
