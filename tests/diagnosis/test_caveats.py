@@ -82,5 +82,5 @@ def test_a_floor_above_the_motion_is_named() -> None:
 def test_friction_that_changed_over_the_session_is_named() -> None:
     (text,) = said(drift=Drift("contact", 0.12, 0.0004))
     assert text.startswith("The friction of the pulley contact rose by 12 % over the session, and no effect")
-    assert text.endswith("the chance of such a trend would be 0.0004.")
+    assert text.endswith("In a random order the chance of such a trend would be 0.0004.")
     assert said(drift=Drift("contact", 0.12, 0.04)) == ()

@@ -84,6 +84,6 @@ def _drifted(case: Case, drift: Drift | None) -> list[str]:
     change = changed_friction(drift.element, drift.change, case.system.kind)
     return [
         f"{capital(change)} over the session, and no effect of the library changes over a session: look for warming, "
-        f"wear or lost pretension. Had the runs come in a random order, the chance of such a trend would be "
-        f"{drift.chance:.1g}."
+        "wear, lost pretension, or a condition that changed with the order of the runs. In a random order the chance "
+        f"of such a trend would be {drift.chance:.1g}."
     ]

@@ -70,8 +70,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)
-    is_far = not selected and (levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR))
-    at_floor = not (is_far or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
+    is_missing = levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR)
+    at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     spare = min(_noise_room(levels), max((levels.explained or 0.0) - needed, NO_GAP - levels.left))

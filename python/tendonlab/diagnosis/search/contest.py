@@ -30,7 +30,7 @@ MATTERS = 0.05  # share of the whitened mean square that an effect must remove n
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
 LOST = 0.02  # share of its left-out gain that it may lose in single experiments: what helps in each is there
 ENOUGH = 5  # experiments of which it says something that an effect helps in each
-FIRM = 2.5  # mean square below which a floor from few repeats may be too low: 63 right effects lost 1.6 % at most there
+FIRM = 2.5  # mean square below which a floor from few repeats may be too low: 53 right effects lost 1.6 % at most there
 MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this share of the acceptance bar
 
 

@@ -44,7 +44,7 @@ def _summary(diagnosis: Diagnosis) -> str:
     if signals := diagnosis.where["signals"]:
         first = max(signals, key=lambda entry: entry["share"])
         if first["share"] == 0.0:
-            return "On held-out experiments no output errs beyond its noise floor."
+            return " ".join([*sentences, "On held-out experiments no output errs beyond its noise floor."])
         largest.append(f"in the {words.words(first['signal'])} ({_of_excess(first['share'])})")
     if clear := [r for r in diagnosis.where["regimes"] if r.get("p_value") is not None and r["p_value"] <= CLEAR]:
         first = max(clear, key=lambda entry: entry["share"] or 0.0)
