@@ -24,8 +24,10 @@ def trial(
     return Trial(effect, SimpleNamespace(**fitted), gain, left_out, doubt, lost)  # type: ignore[arg-type]
 
 
-def fitter_of(*, repeated: bool, **more: Any) -> Any:
-    return SimpleNamespace(floor=SimpleNamespace(repeated=repeated), **more)
+def fitter_of(*, repeated: bool, bodies: int = 1, replay: str = "injection") -> Any:
+    prepared = [SimpleNamespace(core=SimpleNamespace(position=bodies * [0.0]))]
+    case = SimpleNamespace(prepared=prepared, replay=SimpleNamespace(kind=replay))
+    return SimpleNamespace(floor=SimpleNamespace(repeated=repeated), case=case)
 
 
 def test_probabilities_are_the_odds_of_evidence_over_temperature() -> None:
@@ -154,6 +156,19 @@ def test_that_an_effect_helps_in_each_of_few_experiments_says_little(
     assert _worth_adding(fitter_of(repeated=True), of, [leader], further=False) == worth
 
 
+@pytest.mark.parametrize(
+    ("bodies", "replay", "worth"), [(1, "injection", True), (2, "injection", False), (2, "controller", True)]
+)
+def test_near_the_floor_evidence_alone_says_little_where_noise_is_injected_into_several_bodies(
+    bodies: int, replay: str, worth: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
+    of: Any = SimpleNamespace(mean_square=1.2, cost=1000.0, runs=range(7))
+    fitter = fitter_of(repeated=True, bodies=bodies, replay=replay)
+    assert _worth_adding(fitter, of, [trial("a", 50.0, lost=0.0, mean_square=1.17)], further=False) == worth
+    assert contest._least_gain(fitter, of, DETECT) == (contest.CLEAR.evidence if worth else 50.0)
+
+
 @pytest.mark.parametrize(("noise", "better", "worth"), [(True, True, True), (True, False, False), (False, True, False)])
 def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
     noise: bool, better: bool, worth: bool, monkeypatch: pytest.MonkeyPatch
@@ -162,7 +177,7 @@ def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
     monkeypatch.setattr(contest, "may_be_noise", lambda *_: noise)
     of: Any = SimpleNamespace(mean_square=6.6, runs=range(7))
     trials = [trial("a", 50.0, mean_square=4.9), trial("b", 49.0, mean_square=5.0)]
-    assert _worth_adding(fitter_of(repeated=False, case=None), of, trials, further=False) == worth
+    assert _worth_adding(fitter_of(repeated=False), of, trials, further=False) == worth
 
 
 def test_halves_are_predicted_better_only_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -197,7 +212,7 @@ def test_a_parameter_three_sd_from_its_prior_is_strained_if_it_was_stated() -> N
         return SimpleNamespace(free=[SimpleNamespace(name="inertia", mean=1.0, sd=0.5)], x=[x])
 
     def fitter(name: str) -> Any:
-        return fitter_of(repeated=True, case=SimpleNamespace(dataset=SimpleNamespace(parameters={name: None})))
+        return SimpleNamespace(case=SimpleNamespace(dataset=SimpleNamespace(parameters={name: None})))
 
     assert not strained(fitter("inertia"), base(2.4))
     assert not strained(fitter("inertia"), base(-0.4))
@@ -305,8 +320,8 @@ def test_far_behind_is_a_candidate_that_promises_little_at_tuned_and_at_believed
 
 def test_near_the_floor_an_effect_must_gain_more() -> None:
     def least(mean_square: float, cost: float) -> float:
-        base: Any = SimpleNamespace(mean_square=mean_square, cost=cost)
-        return contest._least_gain(base, DETECT)
+        base: Any = SimpleNamespace(mean_square=mean_square, cost=cost, runs=range(7))
+        return contest._least_gain(fitter_of(repeated=True), base, DETECT)
 
     assert least(1.2, 1000.0) == contest.CLEAR.evidence > DETECT.evidence
     assert least(1.2, 400.0) == pytest.approx(20.0)  # a twentieth of the cost matters
