@@ -23,6 +23,7 @@ def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
     under noise as large as the misfit: so little noise believes a wrong model against all that is stated."""
     fitter = Fitter(case, white(case.noise), cancel)
     fit = fitter.fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
+    fit = pose(case, fitter.floor, fit.system, initial=fit.initial).reseated(fit, cancel)
     return cooled(pose(case, fitter.floor, case.system), cancel).linearise() if any(fit.at_bound) else fit
 
 
@@ -38,12 +39,12 @@ def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cance
 
 
 def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:
-    """The fitter for the search beyond `model`, and the model refitted under it.
+    """The fitter for the search beyond `model`, and the model settled under it.
 
     Repeats determine the noise once and for all. Without them, noise is what each model leaves."""
+    model = fitter.settled(model)
     if fitter.floor.repeated:
         return fitter, model
-    model = fitter.settled(model)
     under = fitter.left_by(model)
     model = under.settled(under.fit(model.system, added=model.added, initial=model.initial))
     return replace(under.left_by(model), seen=_sensitivities(fitter.case, model, pool)), model

@@ -1,5 +1,7 @@
 """The noise floor: what repeats of an experiment do not repeat (docs/method.md).
 
+Rounding to coarse steps may repeat, yet no model foretells it: no output's floor is below that of rounding.
+
 Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
 explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats
 nothing tells noise from what the model lacks: then the level of the noise is a parameter of each model, at least that
@@ -14,10 +16,11 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, Floor
+from tendonlab.fitting.noise import RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, Floor, rounding_of
 from tendonlab.simulation.system import System
 
 AR_ORDER = 6
+LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatever was stated
 RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
 
@@ -101,11 +104,12 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
     ar: list[list[float]] = [[] for _ in case.noise]
     rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
     for c in case.measured:
-        ar[c], innovation = _autoregression([d[c] for d, _ in pairs])
-        sd[c] = max(innovation, 0.3 * float(case.noise[c]))
-        rms[c] = max(
-            _rms([d[c] for d in differences]), 0.3 * float(case.noise[c])
-        )  # coarse readings may repeat exactly
+        cleaned = [d[c] for d, _ in pairs]
+        ar[c], innovation = _autoregression(cleaned)
+        rounding = rounding_of(case.dataset.signals[case.outputs[c]])
+        shown, least = _rms(cleaned), LEAST * float(case.noise[c])
+        sd[c] = max(innovation * max(1.0, rounding / shown) if shown > 0.0 else rounding, least)
+        rms[c] = max(_rms([d[c] for d in differences]), rounding, least)
     return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
 
 
@@ -165,7 +169,7 @@ def _run_to_run(coefficients: list[np.ndarray]) -> float:
 
 
 def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
-    """Yule–Walker over several records: always stable. Missing samples count as zero."""
+    """Yule–Walker over several records: always stable. Missing samples count as zero. Nothing is left of zeros."""
     from scipy.linalg import solve_toeplitz
 
     lags = np.zeros(AR_ORDER + 1)
@@ -174,6 +178,8 @@ def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
         x = np.nan_to_num(record - np.nanmean(record))
         count += len(x)
         lags += [float(x[k:] @ x[: len(x) - k]) for k in range(AR_ORDER + 1)]
+    if not lags[0] > 0.0:
+        return [], 0.0
     lags /= count
     lags[0] *= 1 + 1e-9
     a = np.asarray(solve_toeplitz(lags[:-1], lags[1:]))

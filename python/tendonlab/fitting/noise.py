@@ -98,10 +98,15 @@ def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared])
 
 def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
     """Sd of the white noise of one output, from its records; see `sensor_noise`."""
-    rounding = (signal.resolution or 0.0) / np.sqrt(12.0)
+    rounding = rounding_of(signal)
     smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
     stated = signal.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
     return max(stated, rounding, smallest) or 1.0
+
+
+def rounding_of(signal: SignalSpec) -> float:
+    """Sd of rounding to the resolution of a signal, in its unit."""
+    return float((signal.resolution or 0.0) / np.sqrt(12.0))
 
 
 def white(noise: np.ndarray) -> Floor:

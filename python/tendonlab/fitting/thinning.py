@@ -15,7 +15,7 @@ from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of
 from tendonlab.simulation.catalog import InputInfo
 from tendonlab.simulation.prepare import is_held
-from tendonlab.simulation.records import Experiment
+from tendonlab.simulation.records import Experiment, SignalSpec
 from tendonlab.simulation.system import System
 
 RATE = 100.0  # Hz: logs are thinned to no less
@@ -53,10 +53,7 @@ def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
         smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
         calm = all(_is_calm(e, given, factor) for e in dataset for given in _inputs_of(e, system))
         if calm and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
-            signals = {
-                name: replace(dataset.signals[name], noise_sd=noise[name] * _gain(smooth[name]), resolution=None)
-                for name in noise
-            }
+            signals = {name: _smoothed(dataset.signals[name], noise[name], _gain(smooth[name])) for name in noise}
             few = tuple(_thin(e, system, list(noise), factor) for e in dataset)
             said = (*dataset.warnings, THINNED.format(1.0 / max(steps), 1.0 / (max(steps) * factor)))
             return replace(dataset, signals={**dataset.signals, **signals}, experiments=few, warnings=said)
@@ -82,6 +79,11 @@ def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinne
     rest = (rows - np.einsum("nwi,ni->nw", powers, fitted))[:, near]
     gain = float(np.sqrt(np.mean(inverse[:, 0, 0]))) if enough.any() else 1.0
     return Thinned(out, gain, rest[np.isfinite(rest)])
+
+
+def _smoothed(signal: SignalSpec, noise: float, gain: float) -> SignalSpec:
+    """The signal whose noise, rounding included, fell by `gain`."""
+    return replace(signal, noise_sd=gain * noise, resolution=signal.resolution and gain * signal.resolution)
 
 
 def _windows(row: np.ndarray, factor: int) -> np.ndarray:

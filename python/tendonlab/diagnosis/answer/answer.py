@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
+from tendonlab.diagnosis.answer.lone import lone_run, without
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
@@ -44,7 +46,10 @@ def answer(
         floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     drift = over_session(case, search.final)
+    lone = None if search.selected else lone_run(case, search.tuned, floor)
     levels = _levels(search, nominal, stages, floor, drift)
+    if lone:
+        levels = replace(levels, nominal=without(nominal, lone.run), tuned=lone.others)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
     records = where.PortRecords(case, stages["with_effect"], judged)
@@ -74,7 +79,7 @@ def answer(
         },
         next_experiments=tuple(proposed + _measurements(verdict.indistinguishable)),
         references=references,
-        caveats=caveats(case, search.final, stages, floor, judged, drift),
+        caveats=caveats(case, search.final, stages, floor, judged, drift, lone),
         warnings=(
             *notes.warnings(case, floor, search),
             *notes.not_asked(case, search, library),

@@ -8,6 +8,7 @@ import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.lone import Lone
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -26,14 +27,16 @@ def caveats(
     floor: Floor,
     judged: Sequence[int],
     drift: Drift | None = None,
+    lone: Lone | None = None,
 ) -> tuple[str, ...]:
     """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal,
-    friction that changed over the session."""
+    friction that changed over the session, a run that differs from all others."""
     return (
         *_pulled(case, final),
         *_worse(stages, floor, final.added),
         *_drowned(case, floor, judged),
         *_drifted(case, drift),
+        *_differs(lone),
     )
 
 
@@ -76,6 +79,16 @@ def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
                 "it says decides nothing."
             )
     return said
+
+
+def _differs(lone: Lone | None) -> list[str]:
+    if lone is None:
+        return []
+    return [
+        f"{lone.name} alone leaves an error of {np.sqrt(lone.level):.2g} noise floors, the other training runs leave "
+        f"{np.sqrt(lone.others):.2g}: the verdict rests on those. Where a mechanism stops may depend on noise alone, or "
+        "something happened in that run: look at it."
+    ]
 
 
 def _drifted(case: Case, drift: Drift | None) -> list[str]:

@@ -1,0 +1,47 @@
+"""Whether one training experiment alone leaves more than noise: then the others decide.
+
+Where a mechanism stops, noise moves the place by a little, and dry friction keeps that error until the next move. No
+effect of the library makes one run of many differ, and repeats of another motion do not show such noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendonlab.diagnosis.answer.verdict import NO_GAP
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import NEAR_FLOOR, Floor
+
+ENOUGH = 5  # training experiments, of which the others can decide
+FAR_ALONE = 5.0  # whitened mean square of a single run that is no noise: of rigs that lack nothing, 4.2 at most
+
+
+@dataclass(frozen=True)
+class Lone:
+    """The `run`, a training experiment, that alone leaves more than noise: a mean square of `level`; all others of
+    `others`."""
+
+    run: int
+    name: str
+    level: float
+    others: float
+
+
+def lone_run(case: Case, tuned: Fitted, floor: Floor) -> Lone | None:
+    """The training experiment without which the refitted simulator is at the floor; None where there is none, or where
+    that one run is far above all noise. Only repeats tell a floor well enough."""
+    if not floor.repeated or len(tuned.runs) < ENOUGH or tuned.mean_square < NEAR_FLOOR:
+        return None
+    run = int(np.argmax([float(np.mean(np.square(r.residual))) for r in tuned.runs]))
+    level = float(np.mean(np.square(tuned.runs[run].residual)))
+    rest = without(tuned, run)
+    if level > FAR_ALONE or rest > NO_GAP:
+        return None
+    return Lone(run, case.experiments[case.train[run]].name, level, rest)
+
+
+def without(fit: Fitted, run: int) -> float:
+    """Mean square of the whitened residuals of all training experiments but one."""
+    return float(np.mean(np.square(np.concatenate([r.residual for k, r in enumerate(fit.runs) if k != run]))))
