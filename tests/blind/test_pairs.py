@@ -34,6 +34,23 @@ def test_the_share_of_pairs_counts_cases_that_lack_an_effect() -> None:
         plan(4, 40, pairs=1.5)
 
 
+def test_a_weak_effect_hides_behind_a_dominant_one(tmp_path: Path) -> None:
+    """The second effect has strengths of its own; those of the first are as without it."""
+    strengths = {"strengths": (20.0, 40.0), "second": (1.0, 3.0)}
+    cases = plan(4, 10, system="rigid_joint", pairs=1.0, **strengths)
+    assert {(case.strengths, case.second) for case in cases} == {((20.0, 40.0), (1.0, 3.0))}
+    assert {case.second for case in plan(4, 10, strengths=(2.0, 9.0))} == {(2.0, 9.0)}
+    with pytest.raises(ValueError, match=r"second = 3.0, 1.0: expected two numbers"):
+        plan(4, 10, second=(3.0, 1.0))
+    draw(
+        6, 2, tmp_path, system="rigid_joint", pairs=1.0, jobs=1, num_samples=300, step=5e-4, progress=False, **strengths
+    )
+    truths = [tomllib.loads(path.read_text())["draw"] for path in sorted((tmp_path / "sealed").glob("*.toml"))]
+    pairs = [truth for truth in truths if "second_gap_noise" in truth]
+    assert pairs
+    assert all(truth["second_gap_noise"] < 0.3 * truth["gap_noise"] for truth in pairs)
+
+
 def test_both_effects_act_and_the_simulator_knows_neither(tmp_path: Path) -> None:
     draw(5, 2, tmp_path, system="rigid_joint", pairs=1.0, jobs=1, num_samples=200, step=5e-4, progress=False)
     truths = [tomllib.loads(path.read_text()) for path in sorted((tmp_path / "sealed").glob("*.toml"))]

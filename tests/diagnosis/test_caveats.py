@@ -10,6 +10,7 @@ import pytest
 
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.lone import Lone
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.noise import Floor
 from tendonlab.simulation.records import NominalParameter
@@ -25,6 +26,7 @@ def said(
     swing: float = 50.0,
     stated: NominalParameter | None = None,
     drift: Drift | None = None,
+    lone: Lone | None = None,
 ) -> tuple[str, ...]:
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
     free: Any = SimpleNamespace(name="inertia", value=lambda x: 0.02 * float(np.exp(x)))
@@ -41,7 +43,7 @@ def said(
         prepared=[SimpleNamespace(measured=swing * np.sqrt(2.0) * np.sin(time)[None])],
     )
     stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
-    return caveats(case, final, stages, FLOOR, [0], drift)
+    return caveats(case, final, stages, FLOOR, [0], drift, lone)
 
 
 def _of(error: float) -> Replayed:
@@ -84,3 +86,10 @@ def test_friction_that_changed_over_the_session_is_named() -> None:
     assert text.startswith("The friction of the pulley contact rose by 12 % over the session, and no effect")
     assert text.endswith("In a random order the chance of such a trend would be 0.0004.")
     assert said(drift=Drift("contact", 0.12, 0.04)) == ()
+
+
+def test_a_run_that_alone_differs_is_named() -> None:
+    (text,) = said(lone=Lone(2, "run-4", 3.61, 1.0))
+    assert text.startswith(
+        "run-4 alone leaves an error of 1.9 noise floors, the other training runs leave 1: the verdict"
+    )

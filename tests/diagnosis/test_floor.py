@@ -1,16 +1,18 @@
-"""The fit from which the first noise floor follows."""
+"""The first noise floor, the fit from which it follows, and the fit that the search starts from."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from tendonlab import _core
-from tendonlab.diagnosis.floor import rough_fit
+from tendonlab.diagnosis.floor import renewed, rough_fit
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.floor import Sensitivities, estimate
 from tendonlab.fitting.problem import Fitter
 
 
@@ -28,3 +30,30 @@ def test_a_rough_fit_that_ends_at_a_bound_is_made_under_noise_as_large_as_its_mi
         assert fit.mean_square < 0.5 * 20**2 * nominal.mean_square  # in units of noise that is 20 times less
         sds = [abs(x - f.mean) / f.sd for f, x in zip(fit.free, fit.x, strict=True)]
         assert np.max(sds) < 5.0
+
+
+def test_with_repeats_too_a_run_in_a_wrong_initial_state_starts_again_before_the_search() -> None:
+    fitter: Any = SimpleNamespace(floor=SimpleNamespace(repeated=True), settled=lambda model: f"{model}, settled")
+    pool: Any = None
+    model: Any = "model"
+    assert renewed(fitter, model, pool) == (fitter, "model, settled")
+
+
+@pytest.mark.parametrize("differs", [0.0, 0.01, 3.0])
+def test_no_floor_is_below_the_rounding_of_coarse_readings(twin_case: Any, differs: float) -> None:
+    """Rounding that repeats does not show in repeats: rms differences of `differs` times its sd."""
+    signals = dict(twin_case.dataset.signals)
+    c = twin_case.measured[0]
+    step = 1e-3
+    signals[twin_case.outputs[c]] = replace(signals[twin_case.outputs[c]], resolution=step)
+    case = replace(twin_case, dataset=replace(twin_case.dataset, signals=signals))
+    rounding, draw = step / np.sqrt(12.0), np.random.default_rng(0)
+    seen = []
+    for ready in case.prepared:
+        residual = differs * rounding * draw.standard_normal(ready.measured.shape)
+        none = np.zeros((0, *ready.measured.shape))
+        seen.append(Sensitivities(residual, none, none))
+    floor = estimate(case, seen, case.train)
+    assert floor.repeated
+    assert floor.rms[c] == pytest.approx(max(differs, 1.0) * rounding, rel=0.03)
+    assert floor.sd[c] == pytest.approx(max(differs, 1.0) * rounding, rel=0.03)

@@ -41,12 +41,13 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     drawing.add_argument("--unknown", type=float, default=0.0, metavar="SHARE", dest="unknown_share", help=text)
     text = "of the cases that lack an effect, share that lacks a second one, 0 to 1 (default 0)"
     drawing.add_argument("--pairs", type=float, default=0.0, metavar="SHARE", help=text)
-    text = "least and largest gap/noise of an effect (default 1 6)"
     text = "share of the cases whose logs have a mistake: a sign, a unit, a late run, a file twice, 0 to 1 (default 0)"
     drawing.add_argument("--faults", type=float, default=0.0, metavar="SHARE", help=text)
-    drawing.add_argument(
-        "--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=("LEAST", "LARGEST"), help=text
-    )
+    ends = ("LEAST", "LARGEST")
+    text = "least and largest gap/noise of an effect (default 1 6)"
+    drawing.add_argument("--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=ends, help=text)
+    text = "the same of the second effect of a pair (default: as --strengths)"
+    drawing.add_argument("--second", type=float, nargs=2, metavar=ends, help=text)
     drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
 
     text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
@@ -94,7 +95,8 @@ def _draw(given: argparse.Namespace) -> int:
 
     names = ("sealed", "system", "repeats", "unknown_share", "pairs", "faults", "jobs")
     options = {name: getattr(given, name) for name in names}
-    print(draw(given.seed, given.count, given.out, strengths=tuple(given.strengths), **options))
+    second = tuple(given.second) if given.second else None
+    print(draw(given.seed, given.count, given.out, strengths=tuple(given.strengths), second=second, **options))
     return 0
 
 

@@ -36,6 +36,7 @@ def draw(
     pairs: float = 0.0,
     faults: float = 0.0,
     strengths: tuple[float, float] = (1.0, 6.0),
+    second: tuple[float, float] | None = None,
     jobs: int = 2,
     num_samples: int | None = None,
     step: float | None = None,
@@ -48,7 +49,8 @@ def draw(
     The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
     The share `unknown_share` lacks an effect that the library does not have either. Of those that lack an effect the
     share `pairs` lacks a second one. The share `faults` of all cases has a mistake in its logs.
-    The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`.
+    The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`, that of the
+    second one of a pair between the two of `second` (default: the same).
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
     FileExistsError if one of the two folders exists.
@@ -63,6 +65,7 @@ def draw(
         pairs=pairs,
         faults=faults,
         strengths=strengths,
+        second=second,
     )
     wanted = list(enumerate(planned))
     _make_folders(cases, sealed)
@@ -147,4 +150,4 @@ def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int 
     )
     if not wanted.is_pair:
         return rig
-    return paired(rig, np.random.default_rng([seed, index + 1, tries, 1]), strengths=wanted.strengths)
+    return paired(rig, np.random.default_rng([seed, index + 1, tries, 1]), strengths=wanted.second)

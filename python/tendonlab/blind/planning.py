@@ -18,7 +18,7 @@ MIXED = "mixed"
 class Wanted:
     """A case to draw: its system, kind, the effect that its simulator lacks ("" for none, "unknown:bump" for a cause
     that the library lacks as well), whether it repeats an experiment, whether it lacks a second effect, and whether
-    its logs have a mistake.
+    its logs have a mistake; ranges of the gap/noise of its effect and of the second one.
     """
 
     system: str
@@ -28,6 +28,7 @@ class Wanted:
     is_pair: bool = False
     has_fault: bool = False
     strengths: tuple[float, float] = (1.0, 6.0)
+    second: tuple[float, float] = (1.0, 6.0)
 
 
 def plan(
@@ -40,12 +41,14 @@ def plan(
     pairs: float = 0.0,
     faults: float = 0.0,
     strengths: tuple[float, float] = (1.0, 6.0),
+    second: tuple[float, float] | None = None,
 ) -> list[Wanted]:
     """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
 
     `pairs`: share of the cases that lack an effect which lack a second one. `faults`: share of all cases whose logs
     have a mistake. The draws of repeats and mistakes change nothing else: the rigs of a seed are the same with and
-    without. Raises ValueError if count < 1, if a share is none, if `strengths` are no range, and for another system.
+    without. `second`: strengths of second effects, those of the first ones unless given. Raises ValueError if
+    count < 1, if a share is none, if strengths are no range, and for another system.
     """
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
@@ -53,9 +56,10 @@ def plan(
     for name, share in shares.items():
         if not 0.0 <= share <= 1.0:
             raise ValueError(f"{name} = {share}: expected a share from 0 to 1")
-    least, largest = strengths
-    if not 0.0 < least < largest < np.inf:
-        raise ValueError(f"strengths = {least}, {largest}: expected two numbers, 0 < least < largest")
+    second = strengths if second is None else second
+    for name, (least, largest) in (("strengths", strengths), ("second", second)):
+        if not 0.0 < least < largest < np.inf:
+            raise ValueError(f"{name} = {least}, {largest}: expected two numbers, 0 < least < largest")
     if system not in (*SYSTEMS, MIXED):
         raise ValueError(f"system = {system!r}: expected one of {', '.join((*SYSTEMS, MIXED))}")
     repeated, faulty = _some(seed, 1, count=count, share=repeats), _some(seed, 4, count=count, share=faults)
@@ -72,6 +76,7 @@ def plan(
             is_pair=i in paired,
             has_fault=i in faulty,
             strengths=strengths,
+            second=second,
         )
         for i, (name, kind, effect) in enumerate(drawn)
     ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
-from tendonlab.diagnosis.answer.lone import lone_run, without
+from tendonlab.diagnosis.answer.lone import lone_run
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
@@ -49,7 +48,7 @@ def answer(
     lone = None if search.selected else lone_run(case, search.tuned, floor)
     levels = _levels(search, nominal, stages, floor, drift)
     if lone:
-        levels = replace(levels, nominal=without(nominal, lone.run), tuned=lone.others)
+        levels = lone.left_out(levels, nominal)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
     records = where.PortRecords(case, stages["with_effect"], judged)

@@ -5,11 +5,11 @@ effect of the library makes one run of many differ, and repeats of another motio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tendonlab.diagnosis.answer.verdict import NO_GAP
+from tendonlab.diagnosis.answer.verdict import NO_GAP, Levels
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR, Floor
@@ -28,6 +28,10 @@ class Lone:
     level: float
     others: float
 
+    def left_out(self, levels: Levels, nominal: Fitted) -> Levels:
+        """The levels without this run. `nominal`: the untouched simulator, fitted in its initial states alone."""
+        return replace(levels, nominal=_without(nominal, self.run), tuned=self.others)
+
 
 def lone_run(case: Case, tuned: Fitted, floor: Floor) -> Lone | None:
     """The training experiment without which the refitted simulator is at the floor; None where there is none, or where
@@ -36,12 +40,12 @@ def lone_run(case: Case, tuned: Fitted, floor: Floor) -> Lone | None:
         return None
     run = int(np.argmax([float(np.mean(np.square(r.residual))) for r in tuned.runs]))
     level = float(np.mean(np.square(tuned.runs[run].residual)))
-    rest = without(tuned, run)
+    rest = _without(tuned, run)
     if level > FAR_ALONE or rest > NO_GAP:
         return None
     return Lone(run, case.experiments[case.train[run]].name, level, rest)
 
 
-def without(fit: Fitted, run: int) -> float:
+def _without(fit: Fitted, run: int) -> float:
     """Mean square of the whitened residuals of all training experiments but one."""
     return float(np.mean(np.square(np.concatenate([r.residual for k, r in enumerate(fit.runs) if k != run]))))
