@@ -12,11 +12,13 @@ STEP = 0.01
 
 
 def findings(
-    seconds: list[list[float]], *, sd: float = 1e-4, weight: float = 1e3, gain: float = 100.0
+    seconds: list[list[float]], *, sd: float = 1e-4, weight: float = 1e3, gain: float = 100.0, others: float = 0.0
 ) -> list[Finding]:
+    """`gain`: nats by which lags of its own suit an experiment that lags unlike most; `others`: one of the rest."""
     late = np.array(seconds)
     channels = tuple(f"angle_{k + 1}" for k in range(len(late)))
-    gains = np.full(late.shape[1], gain)
+    own = np.any(np.abs(late - np.median(late, axis=1)[:, None]) > STEP, axis=0)
+    gains = np.where(own, gain, others)
     lags = Lags(channels, late, np.full(late.shape, sd), np.full(late.shape, weight), gains, 0.1)
     return clock_findings(lags, NAMES[: late.shape[1]], ["motor_torque"], STEP)
 
@@ -36,6 +38,13 @@ def test_one_experiment_that_lags_blocks(seconds: float, verb: str) -> None:
 
 def test_a_lag_that_suits_the_experiment_no_better_is_none() -> None:
     assert findings([[0.0, 0.0, 0.05, 0.0, 0.0]], gain=40.0) == []
+
+
+@pytest.mark.parametrize(("others", "blocks"), [(49.0, True), (51.0, False), (np.inf, True)])
+def test_a_lag_that_stands_out_no_more_than_those_of_the_others_is_none(others: float, blocks: bool) -> None:
+    """What the simulator lacks suits lags of their own in all experiments."""
+    found = findings([[0.0, 0.0, 0.05, 0.0, 0.0]], others=others)
+    assert any(f.blocks for f in found) == blocks
 
 
 def test_outputs_that_are_late_together_take_a_plural() -> None:

@@ -11,24 +11,30 @@ from tendonlab.fitting import case as cases
 from tendonlab.fitting.case import TOLERANCES, fine_enough
 
 
+def case(**more: Any) -> Any:
+    """A case whose simulator takes 7 and 9 attempts of the stepper."""
+    runs = [{"attempts": 7}, {"attempts": 9}]
+    given = {"measured": [0, 2], "train": (0, 1), "system": None, "run": lambda i, system: runs[i]}
+    return SimpleNamespace(**given | more)
+
+
+def replaced(case: Any, **changes: Any) -> Any:
+    return SimpleNamespace(**vars(case) | changes)
+
+
 @pytest.fixture
 def errs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two outputs whose errors are the tolerance, and three times the tolerance."""
     wave = np.where(np.arange(100) % 2, 1.0, -1.0)
-    monkeypatch.setattr(
-        cases, "replace", lambda case, tolerance: SimpleNamespace(**{**vars(case), "tolerance": tolerance})
-    )
+    monkeypatch.setattr(cases, "replace", replaced)
     monkeypatch.setattr(cases, "_outputs", lambda _, tolerance: [np.array([tolerance * wave, 3.0 * tolerance * wave])])
-
-
-def case(**more: Any) -> Any:
-    return SimpleNamespace(measured=[0, 2], **more)
 
 
 @pytest.mark.parametrize("wanted", TOLERANCES)
 def test_the_error_of_the_worst_output_stays_below_a_tenth_of_its_noise(errs: None, wanted: float) -> None:
     noise = np.array([1.0, np.nan, 31.0 * wanted])
-    assert fine_enough(case(), noise).tolerance == wanted
+    found = fine_enough(case(), noise)
+    assert (found.tolerance, found.num_attempts) == (wanted, 9)
 
 
 def test_where_no_tolerance_is_fine_enough_the_finest_is_taken(errs: None) -> None:
@@ -45,11 +51,9 @@ def test_the_finest_that_runs_is_taken_where_errors_still_fall(finest: float, mo
             raise NumericalError("the step fell to 0")
         return [tolerance * np.ones((1, 9))]
 
-    monkeypatch.setattr(
-        cases, "replace", lambda case, tolerance: SimpleNamespace(**{**vars(case), "tolerance": tolerance})
-    )
+    monkeypatch.setattr(cases, "replace", replaced)
     monkeypatch.setattr(cases, "_outputs", outputs)
-    assert fine_enough(SimpleNamespace(measured=[0]), np.full(1, 1e-30)).tolerance == finest
+    assert fine_enough(case(measured=[0]), np.full(1, 1e-30)).tolerance == finest
 
 
 def test_where_finer_steps_are_in_vain_the_loosest_of_the_best_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,11 +65,9 @@ def test_where_finer_steps_are_in_vain_the_loosest_of_the_best_is_taken(monkeypa
             raise NumericalError("the step fell to 0")
         return [errors[tolerance] * np.ones((1, 9))]
 
-    monkeypatch.setattr(
-        cases, "replace", lambda case, tolerance: SimpleNamespace(**{**vars(case), "tolerance": tolerance})
-    )
+    monkeypatch.setattr(cases, "replace", replaced)
     monkeypatch.setattr(cases, "_outputs", outputs)
-    assert fine_enough(SimpleNamespace(measured=[0]), np.ones(1)).tolerance == TOLERANCES[1]
+    assert fine_enough(case(measured=[0]), np.ones(1)).tolerance == TOLERANCES[1]
 
 
 def test_the_reference_is_a_hundredth_of_the_finest_or_what_the_inputs_allow(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,3 +82,13 @@ def test_the_reference_is_a_hundredth_of_the_finest_or_what_the_inputs_allow(mon
     monkeypatch.setattr(cases, "_outputs", outputs)
     cases._finest(case())
     assert tried == pytest.approx([TOLERANCES[-1] / 100, TOLERANCES[-1] / 10, TOLERANCES[-1]])
+
+
+@pytest.mark.parametrize(("needed", "allowed"), [(0, 13_000), (3_000, 13_000), (5_000, 20_000)])
+def test_a_stiff_simulator_may_take_four_times_the_attempts_that_it_needs(
+    needed: int, allowed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cases._core, "Settings", SimpleNamespace)
+    ready = SimpleNamespace(measured=np.zeros((1, 100)), position_scale=1.0, velocity_scale=1.0)
+    given = case(prepared=[ready], tolerance=1e-4, num_attempts=needed)
+    assert cases.Case.settings(given).max_attempts == allowed

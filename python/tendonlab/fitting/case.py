@@ -20,6 +20,7 @@ from tendonlab.simulation.system import System, require_system
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
+STIFFER = 4  # times the attempts of the simulator itself, where that is more
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 START = 0.2  # s of an experiment from which its initial state is estimated
@@ -29,7 +30,8 @@ START = 0.2  # s of an experiment from which its initial state is estimated
 class Case:
     """Experiments made ready. `noise`: sd of each output's white noise, NaN where it was not measured. `tolerance`:
     relative error of a step of the simulation. `scatter`: groups of parameters that differ by a common factor from run
-    to run, and the sd of its logarithm.
+    to run, and the sd of its logarithm. `num_attempts`: of the stepper, that the simulator itself takes in an
+    experiment at that tolerance, where that is known.
 
     Each experiment has unknowns of its own: the free parts of its initial state, then the logarithms of the factors."""
 
@@ -42,6 +44,7 @@ class Case:
     scales: Mapping[str, Scale]
     tolerance: float
     scatter: tuple[tuple[tuple[int, ...], float], ...] = ()
+    num_attempts: int = 0
 
     @property
     def train(self) -> tuple[int, ...]:
@@ -149,11 +152,12 @@ class Case:
 
     def settings(self, *, ports: bool = False) -> _core.Settings:
         """How the stepper goes through every experiment of this case. `ports`: also record what each port sees."""
+        usual = ATTEMPTS * max(e.measured.shape[1] for e in self.prepared) + 10_000
         return _core.Settings(
             tolerance=self.tolerance,
             position_scale=min(e.position_scale for e in self.prepared),
             velocity_scale=min(e.velocity_scale for e in self.prepared),
-            max_attempts=ATTEMPTS * max(e.measured.shape[1] for e in self.prepared) + 10_000,
+            max_attempts=max(usual, STIFFER * self.num_attempts),
             ports=ports,
         )
 
@@ -223,10 +227,16 @@ def fine_enough(case: Case, noise: np.ndarray) -> Case:
     for tolerance in tried:
         errors.append(error(tolerance))
         if errors[-1] < NUMERICS_SHARE:
-            return replace(case, tolerance=tolerance)
+            return _at(case, tolerance)
     best_tried = next(t for t, one in zip(tried, errors, strict=True) if one <= IN_VAIN * min(errors))
     is_falling = best_tried == tried[-1]
-    return replace(case, tolerance=max(TOLERANCES[-1], reference) if is_falling else best_tried)
+    return _at(case, max(TOLERANCES[-1], reference) if is_falling else best_tried)
+
+
+def _at(case: Case, tolerance: float) -> Case:
+    """The case at this tolerance, with the attempts that its own simulator needs there."""
+    case = replace(case, tolerance=tolerance)
+    return replace(case, num_attempts=max(case.run(i, case.system)["attempts"] for i in case.train[:3]))
 
 
 def _finest(case: Case) -> tuple[float, list[np.ndarray]]:
