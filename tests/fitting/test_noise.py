@@ -1,5 +1,6 @@
 """Noise of the outputs, on records whose answers are known."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -110,3 +111,17 @@ def test_friction_of_an_element_scales_together(twin_case: Any) -> None:
     assert {"motor_coulomb", "motor_static_excess"} < added[0]
     assert {"joint_coulomb", "joint_static_excess"} < added[1]
     assert len(added) == 2
+    assert not {"motor_level_asymmetry", "joint_level_asymmetry"} & (added[0] | added[1])  # shares of what scales
+
+
+def test_friction_that_scales_from_run_to_run_stays_within_its_bounds(twin_case: Any) -> None:
+    case = replace(
+        twin_case, scatter=tuple((tuple(g), 0.1) for g in friction_groups(twin_case.system, with_added=True))
+    )
+    strong = case.system.with_effects({"joint:load_dependence": {"load_dependence": 0.99}})
+    k = [p.name for p in strong.info.parameters].index("joint_load_dependence")
+    i = case.train[0]
+    values, _ = case.at(i, strong, [*case.prepared[i].initial_mean, 0.0, 0.2])
+    assert values[k] == 1.0
+    values, _ = case.at(i, strong, [*case.prepared[i].initial_mean, 0.0, -0.2])
+    assert values[k] == pytest.approx(0.99 * np.exp(-0.2))

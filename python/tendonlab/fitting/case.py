@@ -104,7 +104,7 @@ class Case:
     def at(self, i: int, system: System, own: Sequence[float] = ()) -> tuple[list[float], list[bool]]:
         """Values and flags for the core in experiment i, with its `own` unknowns (default: their means): its conditions
         hold there, its payload is added."""
-        values = system.values()
+        values, rows = system.values(), system.info.parameters
         fixed, added = self._conditions[i]
         for k, known in fixed.items():
             values[k] = known
@@ -112,7 +112,7 @@ class Case:
             values[k] += more
         for (group, _), logarithm in zip(self.scatter, own[len(self.prepared[i].initial) :], strict=False):
             for k in group:
-                values[k] *= float(np.exp(logarithm))
+                values[k] = float(np.clip(values[k] * np.exp(logarithm), rows[k].lower, rows[k].upper))
         return values, system.active(keep_zero=False)
 
     def started(self, i: int, own: Sequence[float]) -> _core.Experiment:

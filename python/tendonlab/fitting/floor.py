@@ -35,7 +35,8 @@ class Sensitivities:
 
 
 def friction_groups(system: System, *, with_added: bool = False) -> list[list[int]]:
-    """Indices of the friction parameters of each element that has friction: they scale together from run to run.
+    """Indices of the friction parameters of each element that has friction: they scale together from run to run. A
+    bounded ratio that may be negative, such as an asymmetry, is a share of friction that scales already.
     `with_added`: also those of the friction effects that the system lacks, which a candidate may add."""
     info = system.info
     groups = []
@@ -44,7 +45,7 @@ def friction_groups(system: System, *, with_added: bool = False) -> list[list[in
             i
             for i, p in enumerate(info.parameters)
             if p.element == element and p.amplitude and p.purpose != "share"
-            and p.dimension in ("effort", "damping", "ratio")
+            and p.dimension in ("effort", "damping", "ratio") and not -np.inf < p.lower < 0.0
         ]  # fmt: skip
         present = [i for i in able if _is_present(system, i)]
         if present:

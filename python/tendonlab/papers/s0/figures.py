@@ -54,7 +54,7 @@ def stiffness_against_preload(ax: Axes, of: Configuration, *, torques: Sequence[
         title="Fig. 5  Stiffness against preload (reconstructed)",
     )
     ax.set_ylim(bottom=0)
-    ax.legend(title="torque", loc="lower right", ncols=4)
+    ax.legend(title="torque", loc="lower right", ncols=2)
     return ax
 
 

@@ -71,7 +71,7 @@ def draw_bushing(ax: Axes, *, theta: float = 0.9, tension: float = 1.0) -> Axes:
     arrows = [
         (ends[0], along[0] * UNIT, "T", INK, along[0] * (UNIT + 0.09)),
         (ends[1], along[1] * UNIT, "T", INK, along[1] * (UNIT + 0.09)),
-        (bottom, np.array([0.0, -UNIT * size]), reaction, BLUE, np.array([0.55, -UNIT * size])),
+        (bottom, np.array([0.0, -UNIT * size]), reaction, BLUE, np.array([0.72, -UNIT * size])),
         (bend[12] - np.array([0.02, 0.07]), along[0] * UNIT * 0.5 * size, friction, RED, np.array([-0.25, -0.08])),
     ]
     for start, force, text, colour, aside in arrows:
@@ -83,7 +83,7 @@ def draw_bushing(ax: Axes, *, theta: float = 0.9, tension: float = 1.0) -> Axes:
     ax.annotate("", way + 0.25 * along[1], way, arrowprops={"arrowstyle": "->", "color": MUTED})
     _label(ax, way + 0.3 * along[1], "v", color=MUTED, ha="center", va="bottom")
     ax.set(xlim=(-1.8, 1.8), ylim=(-1.4, 0.55))
-    ax.set(aspect="equal", title=rf"Fig. 7  Forces on a cable in a bushing, $\theta$ = {theta:g} rad, in units of T")
+    ax.set(aspect="equal", title=rf"Fig. 7  Forces in a bushing, $\theta$ = {theta:g} rad")
     ax.axis("off")
     return ax
 

@@ -120,7 +120,7 @@ def compared(axes: Sequence[Axes], record: Record, prediction: Prediction, *, ti
     error = measured - prediction.tau_out
     left.plot(time[:: 2 * SHOWN], error[:: 2 * SHOWN], ".", ms=1.5, color=INK, rasterized=True)
     left.axhline(0.0, color=MODEL, lw=1.2)
-    left.set(xlabel="time (s)", ylabel="twin less model (N·m)", ylim=(-1.6, 1.6), title="difference (twin)")
+    left.set(xlabel="time (s)", ylabel="twin less model (N·m)", ylim=(-2.0, 2.0), title="difference (twin)")
     left.locator_params(axis="x", nbins=5)
     for one in axes:
         tidy(one)

@@ -161,8 +161,8 @@ def draw_fit(axes: Sequence[Axes], read: pd.DataFrame, simulated: pd.DataFrame, 
     ax.plot(read.index, read[name], ".", color=INK, ms=1.2, alpha=0.5, rasterized=True, label="measured (twin)")
     ax.plot(simulated.index, simulated[name], color=ORANGE, lw=1.2, label="simulated")
     low, high = float(read[name].min()), float(read[name].max())
-    ax.set(ylabel=f"$T_{{{name[1:]}}}$ (N)", ylim=(low - 2, high + 0.25 * (high - low)))
-    ax.legend(loc="upper center", ncols=2, markerscale=5)
+    ax.set(ylabel=f"$T_{{{name[1:]}}}$ (N)", ylim=(low - 2, high + 0.45 * (high - low)))
+    ax.legend(loc="upper left", markerscale=5)
     left.plot(read.index, read[name] - simulated[name], ".", color=INK, ms=1.2, alpha=0.5, rasterized=True)
     left.axhline(0.0, color=ORANGE, lw=1.2)
     left.set(xlabel="time (s)", ylabel="difference (N)")
@@ -171,7 +171,7 @@ def draw_fit(axes: Sequence[Axes], read: pd.DataFrame, simulated: pd.DataFrame, 
 
 def draw_coefficient(ax: Axes, time: np.ndarray, mu: np.ndarray, kept: np.ndarray) -> Axes:
     """Fig. 14a: friction coefficient sample by sample; what counts in colour, reversals left out in grey."""
-    ax.plot(time, mu, ".", color=MUTED, ms=1.2, rasterized=True, label="all samples: spikes at reversals")
+    ax.plot(time, mu, ".", color=MUTED, ms=1.2, rasterized=True, label="all samples")
     ax.plot(time[kept], mu[kept], ".", color=BLUE, ms=1.5, rasterized=True, label="away from reversals")
     ax.set(xlabel="time (s)", ylabel=r"$\mu_{c,21}$ (1)", ylim=(0.0, 0.3))
     ax.legend(loc="upper right", markerscale=6)
