@@ -22,8 +22,9 @@ class Number(NamedTuple):
     expected and the computed value, and how far they may differ.
 
     "paper": printed in the paper. "derived": follows from printed numbers by the equations. "reconstructed": computed
-    separately from values that the paper does not print. "twin": read off a twin, so that agreement shows only that the
-    reconstruction is consistent. `bound`: the paper states a lower bound."""
+    separately from values that the paper does not print. "twin": read off a twin, which was made to meet
+    the expected number: agreement shows only that the reconstruction is consistent. `bound`: the paper states a lower
+    bound."""
 
     quantity: str
     unit: str

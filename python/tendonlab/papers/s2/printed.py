@@ -90,12 +90,12 @@ def _identified(of: Constants, found: dict[str, Estimate]) -> Iterator[Number]:
     values = identified()
     for group, fit in (("harmonic gear", found["gear"]), ("cable", found["cable"])):
         for name, printed in values[group].items():
-            yield Number(f"Table II: {name} ({group})", units[name], PAPER, printed, fit[name], shares[name] * printed)
+            yield Number(f"Table II: {name} ({group})", units[name], TWIN, printed, fit[name], shares[name] * printed)
     for cable in (1, 2):
         fit = found[f"bushing {cable}"]
         for name in BRANCHES:
             printed, reach = values[f"cable {cable} friction"][name], 2.5 * fit.half_widths[name]
-            yield Number(f"Table II: {name} (cable {cable})", units[name], PAPER, printed, fit[name], reach)
+            yield Number(f"Table II: {name} (cable {cable})", units[name], TWIN, printed, fit[name], reach)
     error = found["cable"].validation_error
     assert error is not None
     yield Number("NRMSE of the cable's fit on validation samples", "1", TWIN, 0.0, error, 0.02)

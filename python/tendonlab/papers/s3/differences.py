@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import pandas as pd
 
-from tendonlab.papers.compared import DERIVED, PAPER, RECONSTRUCTED, TWIN, Number, compared
+from tendonlab.papers.compared import DERIVED, RECONSTRUCTED, TWIN, Number, compared
 from tendonlab.papers.s3.fit import Fit
 from tendonlab.papers.s3.groups import Record
 from tendonlab.papers.s3.rig import assumed_rig, cable_pretension, paper_parameters
@@ -45,8 +45,8 @@ def _shapes() -> Iterator[Number]:
 
 def _recovery(recovered: Fit) -> Iterator[Number]:
     p = paper_parameters()
-    yield Number("p: mu_d, from data of the law", "1", PAPER, p.mu_d, recovered.p.mu_d, 0.02 * p.mu_d)
-    yield Number("p: v_thres, from data of the law", "deg/s", PAPER, p.v_thres, recovered.p.v_thres, 0.02 * p.v_thres)
+    yield Number("p: mu_d, from data of the law", "1", TWIN, p.mu_d, recovered.p.mu_d, 0.02 * p.mu_d)
+    yield Number("p: v_thres, from data of the law", "deg/s", TWIN, p.v_thres, recovered.p.v_thres, 0.02 * p.v_thres)
 
 
 def _twin(fit: Fit, records: Mapping[int, Record]) -> Iterator[Number]:
