@@ -19,6 +19,7 @@ FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
+PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
 SOFT, SAME_GROUP = 0.05, 0.2
 
 
@@ -92,9 +93,10 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)
     total = sum(weight.values())
     is_whole = 1.0
-    if selected and levels.repeated:  # what explains a part only may imitate what is not known
+    if selected:  # what explains a part only may imitate what is not known
         is_whole = weight["effect"] / (weight["effect"] + weight["unknown_effect"])
-    effects, sets = marginals(rounds, there=is_whole + (1.0 - is_whole) * PARTLY)
+    partly = PARTLY if levels.repeated else PARTLY_ASSUMED
+    effects, sets = marginals(rounds, there=is_whole + (1.0 - is_whole) * partly)
     groups = [group for contest in rounds if (group := _group(contest))]
     return Verdict(verdict, {k: v / total for k, v in weight.items()}, effects, sets, groups)
 
