@@ -7,11 +7,18 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.search import contest
-from tendonlab.diagnosis.search.contest import Round, _worth_adding, explains_enough, probabilities
+from tendonlab.diagnosis.search.contest import Round, _worth_adding, probabilities
 from tendonlab.diagnosis.search.refit import _goal, strained
 from tendonlab.diagnosis.search.screen import Screened, _score, _starts, _unit
 from tendonlab.diagnosis.search.screen import _Score as Score
-from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
+from tendonlab.diagnosis.search.trial import (
+    DETECT,
+    Bar,
+    Trial,
+    bar_for_further_effect,
+    explains_enough,
+    is_no_shape,
+)
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
@@ -72,10 +79,29 @@ def test_a_bar_asks_for_evidence_and_for_left_out_experiments_beyond_doubt(
     assert bar.passed(trial("a", evidence, left_out=left_out, doubt=doubt)) == passed
 
 
-def test_the_bar_of_a_further_effect_rises_with_what_the_first_gained_where_runs_repeat() -> None:
-    assert bar_for_further_effect(fitter_of(repeated=True), 1000.0) == Bar(30.0, 9.0, doubted=True)
-    assert bar_for_further_effect(fitter_of(repeated=True), 10_000.0) == Bar(100.0, 9.0, doubted=True)
-    assert bar_for_further_effect(fitter_of(repeated=False), 10_000.0) == Bar(10.0, 3.0, doubted=True)
+def test_the_bar_of_a_further_effect_is_higher_where_runs_repeat() -> None:
+    assert bar_for_further_effect(fitter_of(repeated=True)) == Bar(30.0, 9.0, doubted=True)
+    assert bar_for_further_effect(fitter_of(repeated=False)) == Bar(10.0, 3.0, doubted=True)
+
+
+@pytest.mark.parametrize(
+    ("largest", "left", "no_shape"),
+    [
+        (9_000.0, 2.9, True),  # one per cent of what the first effect gained
+        (11_000.0, 2.9, False),
+        (1e6, 1.9, True),  # or a weak effect behind a dominant one, which leaves little
+    ],
+)
+def test_a_further_effect_is_no_error_of_a_shape_where_it_gains_much_or_leaves_little(
+    largest: float, left: float, no_shape: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
+    base: Any = SimpleNamespace(mean_square=3.0, runs=range(7))
+    trials = [trial("a", 100.0, mean_square=left), trial("b", 60.0, mean_square=2.95)]
+    assert is_no_shape(base, trials, largest) == no_shape
+    fitter = fitter_of(repeated=True)
+    assert _worth_adding(fitter, base, trials, further=True, largest_gain=largest) == no_shape
+    assert _worth_adding(fitter, base, trials, further=False, largest_gain=largest)
 
 
 def test_a_trial_gains_what_its_model_has_over_the_one_it_extends() -> None:

@@ -140,7 +140,7 @@ def test_a_rival_with_one_more_effect_wins_by_evidence_and_by_predicting_halves(
 ) -> None:
     """Evidence above the bar alone is not enough, nor are halves that are predicted better."""
     base: Any = SimpleNamespace(evidence=-50.0, counted=lambda shares: base)
-    pair: Any = SimpleNamespace(evidence=-50.0 + bar_for_further_effect(fitter, 0.0).evidence + above, shares=())
+    pair: Any = SimpleNamespace(evidence=-50.0 + bar_for_further_effect(fitter).evidence + above, shares=())
     round_ = SimpleNamespace(accepted=SimpleNamespace(fitted=pair))
     monkeypatch.setattr(rivals, "next_effect", lambda *_, **__: round_)
     monkeypatch.setattr(rivals, "predicts_better", lambda _, before, after: halves and (before, after) == (base, pair))

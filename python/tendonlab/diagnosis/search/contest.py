@@ -12,7 +12,7 @@ from tendonlab.diagnosis.discrepancy import may_be_noise
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
-from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
+from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect, explains_enough, is_no_shape
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -24,8 +24,6 @@ FAR_BEHIND = 0.1  # share of the most that another candidate promises
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
-TWIN = 3.0  # nats within which two effects say the same of these data
-FURTHER_SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove without repeats
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
 LOST = 0.02  # share of its left-out gain that it may lose in single experiments: what helps in each is there
@@ -82,7 +80,7 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     screened = shop.screen_all(fitter, base, label)
     if not screened:
         return None
-    bar = bar_for_further_effect(fitter, largest_gain) if further else DETECT
+    bar = bar_for_further_effect(fitter) if further else DETECT
     chosen = _promising(screened, bar)[: NUM_REFIT_FURTHER if further else NUM_REFIT]
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
@@ -90,7 +88,7 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     trials = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
     established = {t.effect for t in trials if bar.passed(t)}
     leader = trials[0] if trials and trials[0].effect in established else None
-    if leader is None or not _worth_adding(fitter, base, trials, further=further):
+    if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
         leader, established = None, set()
     fitted = {t.effect for t in trials}
     failed = [s.effect for s in chosen if s.effect not in fitted]
@@ -138,7 +136,9 @@ def _evidence_counts(fitter: Fitter, base: Fitted) -> bool:
     return len(base.runs) >= ENOUGH and (bodies == 1 or fitter.case.replay.kind != "injection")
 
 
-def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool) -> bool:
+def _worth_adding(
+    fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool, largest_gain: float = 0.0
+) -> bool:
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
     repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
     Without repeats it must explain enough, or leave what may be noise. Near the floor, beyond the first effect and
@@ -149,19 +149,13 @@ def _worth_adding(fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, furt
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and _evidence_counts(fitter, base)
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
-    enough = fitter.floor.repeated or explains_enough(base, trials)
+    repeated = fitter.floor.repeated
+    if repeated and further and not is_no_shape(base, trials, largest_gain):
+        return False
+    enough = repeated or explains_enough(base, trials)
     if not (enough or may_be_noise(fitter.case, first)):
         return False
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
-
-
-def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
-    """Whether the first trial removes half of what the base leaves above the sensors' noise; a third where no other
-    gains half as much. The error of a shape looks like one more effect, which removes less."""
-    rest, left = base.mean_square - 1.0, trials[0].fitted.mean_square - 1.0
-    most = trials[0].evidence_gain
-    alone = all(t.evidence_gain < 0.5 * most or most - t.evidence_gain < TWIN for t in trials[1:])
-    return left < rest * (1.0 - (ALONE_SHARE if alone else FURTHER_SHARE))
 
 
 def probabilities(

@@ -12,7 +12,7 @@ from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effe
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
 from tendonlab.diagnosis.search.swap import extended
-from tendonlab.diagnosis.search.trial import DETECT, Trial, bar_for_further_effect
+from tendonlab.diagnosis.search.trial import DETECT, FURTHER_SHARE, Trial, bar_for_further_effect, is_no_shape
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -119,8 +119,13 @@ def improve(
 
     None where every effect deserves its place."""
     strongest = max(contested, key=lambda place: place.holder.evidence_gain)
-    bar = bar_for_further_effect(fitter, strongest.holder.evidence_gain)
-    needless = [place for place in contested if place is not strongest and not bar.passed(place.holder)]
+    bar, most = bar_for_further_effect(fitter), strongest.holder.evidence_gain
+
+    def is_needed(place: Place) -> bool:
+        no_shape = not fitter.floor.repeated or is_no_shape(place.others, [place.holder], most)
+        return bar.passed(place.holder) and no_shape
+
+    needless = [place for place in contested if place is not strongest and not is_needed(place)]
     if needless:
         return Improved(min(needless, key=lambda place: place.holder.evidence_gain).others)
     claims = [(place, rival) for place in contested if (rival := place.rival()) is not None]
@@ -140,10 +145,9 @@ def _rival_and_one_more(fitter: Fitter, base: Fitted, rival: Trial, places: Plac
     if round_ is None or round_.accepted is None:
         return None
     pair = round_.accepted.fitted
-    clear = (
-        pair.evidence - base.counted(pair.shares).evidence
-        > bar_for_further_effect(fitter, largest_gain(places)).evidence
-    )
+    share = FURTHER_SHARE * largest_gain(places) if fitter.floor.repeated else 0.0
+    least = max(bar_for_further_effect(fitter).evidence, share)
+    clear = pair.evidence - base.counted(pair.shares).evidence > least
     if not clear or not predicts_better(fitter, base, pair):
         return None
     return Improved(pair, Place(rival.fitted, round_.accepted, round_))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tendonlab.diagnosis.floor import renewed
-from tendonlab.diagnosis.search.contest import Round, explains_enough, next_effect
+from tendonlab.diagnosis.search.contest import Round, next_effect
 from tendonlab.diagnosis.search.rivals import (
     MAX_EFFECTS,
     Place,
@@ -16,7 +16,7 @@ from tendonlab.diagnosis.search.rivals import (
     improve,
     largest_gain,
 )
-from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial
+from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, explains_enough
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter

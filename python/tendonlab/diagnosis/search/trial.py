@@ -13,6 +13,8 @@ from tendonlab.fitting.problem import Fitter
 STEADY, LOSSES = 2.0, 5.0
 MOST = 1e9  # nats: beyond, a gain says no more
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
+TWIN = 3.0  # nats within which two effects say the same of these data
+HALF, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove
 
 
 @dataclass(frozen=True)
@@ -80,11 +82,24 @@ class Bar:
 DETECT = Bar(evidence=10.0, left_out=3.0, doubted=False)
 
 
-def bar_for_further_effect(fitter: Fitter, largest_gain: float) -> Bar:
-    """The bar for an effect beyond the first, which may only imitate what is wrong with the shape of the first.
-
-    `largest_gain`: the most evidence that an effect has gained so far. Without repeats the noise of each model already
-    contains the error of its shape."""
+def bar_for_further_effect(fitter: Fitter) -> Bar:
+    """The bar for an effect beyond the first, which may only imitate what is wrong with the shape of the first. Without
+    repeats the noise of each model already contains the error of its shape."""
     if not fitter.floor.repeated:
         return Bar(DETECT.evidence, DETECT.left_out, doubted=True)
-    return Bar(max(FURTHER_EVIDENCE, FURTHER_SHARE * largest_gain), FURTHER_LEFT_OUT, doubted=True)
+    return Bar(FURTHER_EVIDENCE, FURTHER_LEFT_OUT, doubted=True)
+
+
+def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
+    """Whether the first trial removes half of what the base leaves above the sensors' noise; a third where no other
+    gains half as much. The error of a shape looks like one more effect, which removes less."""
+    rest, left = base.mean_square - 1.0, trials[0].fitted.mean_square - 1.0
+    most = trials[0].evidence_gain
+    alone = all(t.evidence_gain < 0.5 * most or most - t.evidence_gain < TWIN for t in trials[1:])
+    return left < rest * (1.0 - (ALONE_SHARE if alone else HALF))
+
+
+def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> bool:
+    """Whether, where repeats say what is noise, the first trial is more than the error of the shape of an effect that
+    was added before: either by its share of the `largest_gain` of those, or because little is left."""
+    return trials[0].evidence_gain > FURTHER_SHARE * largest_gain or explains_enough(base, trials)
