@@ -85,19 +85,20 @@ def test_the_bar_of_a_further_effect_is_higher_where_runs_repeat() -> None:
 
 
 @pytest.mark.parametrize(
-    ("largest", "left", "no_shape"),
+    ("gain", "largest", "left", "no_shape"),
     [
-        (9_000.0, 2.9, True),  # one per cent of what the first effect gained
-        (11_000.0, 2.9, False),
-        (1e6, 1.9, True),  # or a weak effect behind a dominant one, which leaves little
+        (90.0, 8_900.0, 2.9, True),  # one per cent of what the first effect gained
+        (90.0, 9_100.0, 2.9, False),
+        (110.0, 1e6, 1.9, True),  # or a weak effect behind a dominant one, which leaves little
+        (90.0, 1e6, 1.9, False),
     ],
 )
 def test_a_further_effect_is_no_error_of_a_shape_where_it_gains_much_or_leaves_little(
-    largest: float, left: float, no_shape: bool, monkeypatch: pytest.MonkeyPatch
+    gain: float, largest: float, left: float, no_shape: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
     base: Any = SimpleNamespace(mean_square=3.0, runs=range(7))
-    trials = [trial("a", 100.0, mean_square=left), trial("b", 60.0, mean_square=2.95)]
+    trials = [trial("a", gain, mean_square=left), trial("b", 0.6 * gain, mean_square=2.95)]
     assert is_no_shape(base, trials, largest) == no_shape
     fitter = fitter_of(repeated=True)
     assert _worth_adding(fitter, base, trials, further=True, largest_gain=largest) == no_shape

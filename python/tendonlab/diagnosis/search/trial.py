@@ -15,6 +15,7 @@ MOST = 1e9  # nats: beyond, a gain says no more
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 TWIN = 3.0  # nats within which two effects say the same of these data
 HALF, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove
+HIDDEN = 100.0  # nats by which a weak effect must show behind a dominant one: errors of shapes gained 84
 
 
 @dataclass(frozen=True)
@@ -101,5 +102,7 @@ def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
 
 def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> bool:
     """Whether, where repeats say what is noise, the first trial is more than the error of the shape of an effect that
-    was added before: either by its share of the `largest_gain` of those, or because little is left."""
-    return trials[0].evidence_gain > FURTHER_SHARE * largest_gain or explains_enough(base, trials)
+    was added before: either by its share of the `largest_gain` of those, or because it tells clearly and leaves
+    little."""
+    gain = trials[0].evidence_gain
+    return gain > FURTHER_SHARE * largest_gain or (gain > HIDDEN and explains_enough(base, trials))
