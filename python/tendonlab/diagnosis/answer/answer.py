@@ -15,7 +15,7 @@ from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
-from tendonlab.diagnosis.answer.lone import lone_run
+from tendonlab.diagnosis.answer.lone import Lone, lone_run
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
@@ -36,8 +36,7 @@ def answer(
 ) -> Diagnosis:
     """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone;
     `library`: names of the effects that were asked for (None: all)."""
-    fitter = search.fitter
-    case, floor = fitter.case, fitter.floor
+    fitter, case, floor = search.fitter, search.fitter.case, search.fitter.floor
     judged = case.test or case.train
     steps = [heldout.replay(case, heldout.models(case, model, judged), judged) for model in search.path]
     untouched = heldout.replay(case, [case.system] * len(judged), judged)
@@ -46,9 +45,7 @@ def answer(
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     drift = over_session(case, search.final)
     lone = None if search.selected else lone_run(case, search.tuned, floor)
-    levels = _levels(search, nominal, stages, floor, drift)
-    if lone:
-        levels = lone.left_out(levels, nominal)
+    levels = _levels(search, nominal, stages, floor, drift, lone)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
     records = where.PortRecords(case, stages["with_effect"], judged)
@@ -106,9 +103,16 @@ def _where(
     }
 
 
-def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor: Floor, drift: Drift | None) -> Levels:
+def _levels(
+    search: Search,
+    nominal: Fitted,
+    stages: dict[str, Replayed],
+    floor: Floor,
+    drift: Drift | None,
+    lone: Lone | None = None,
+) -> Levels:
     case, final, doubtful = search.fitter.case, search.final, not floor.repeated
-    return Levels(
+    levels = Levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
         refitted=heldout.level(stages["refitted"], floor),
@@ -120,6 +124,7 @@ def _levels(search: Search, nominal: Fitted, stages: dict[str, Replayed], floor:
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
         drifted=drift.chance if drift and drift.tells and not search.selected else 1.0,
     )
+    return lone.left_out(levels, nominal) if lone else levels
 
 
 def _splits(case: Case) -> list[tuple[str, Sequence[int]]]:
