@@ -47,6 +47,14 @@ def test_a_lag_that_stands_out_no_more_than_those_of_the_others_is_none(others: 
     assert any(f.blocks for f in found) == blocks
 
 
+def test_of_two_late_runs_each_is_judged_against_the_rest() -> None:
+    """Not against each other: one that fails is no bar for the other."""
+    late = np.array([[0.0, 0.05, 0.0, 0.07, 0.0]])
+    lags = Lags(("q",), late, np.full(late.shape, 1e-4), np.full(late.shape, 1e3), np.array([9, 90, 45, 150, 9.0]), 0.1)
+    found = clock_findings(lags, NAMES, ["motor_torque"], STEP)
+    assert [f.experiment for f in found if f.blocks] == ["d"]
+
+
 def test_outputs_that_are_late_together_take_a_plural() -> None:
     (found,) = findings([[0.0, 0.0, 0.05, 0.0, 0.0]] * 2)
     assert "angle_1 and angle_2 lag the inputs" in found.detail

@@ -207,6 +207,12 @@ def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
     assert _worth_adding(fitter_of(repeated=False), of, trials, further=False) == worth
 
 
+def test_where_nothing_is_left_nothing_explains_enough() -> None:
+    """Half of what a model leaves below the floor is no bar."""
+    base: Any = SimpleNamespace(mean_square=0.9)
+    assert not explains_enough(base, [trial("a", 100.0, mean_square=0.8)])
+
+
 def test_halves_are_predicted_better_only_beyond_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     from tendonlab.diagnosis.search import halves
 

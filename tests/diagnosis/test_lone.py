@@ -16,9 +16,12 @@ from tendonlab.fitting.noise import Floor
 FLOOR = Floor(np.array([1.0]), [[]], [1.0], 0.008, repeated=True)
 
 
-def fit_of(*levels: float) -> Any:
-    """A fit whose runs leave these mean squares."""
-    runs = [SimpleNamespace(residual=np.sqrt(level) * np.tile([1.0, -1.0], 50)) for level in levels]
+def fit_of(*levels: float, own: float = 0.0) -> Any:
+    """A fit whose runs leave these mean squares, of which the share `own` is what their own unknowns cost."""
+    runs = [
+        SimpleNamespace(residual=np.sqrt((1.0 - own) * level) * np.tile([1.0, -1.0], 50), cost=100.0 * level)
+        for level in levels
+    ]
     return SimpleNamespace(runs=runs, mean_square=float(np.mean(levels)))
 
 
@@ -42,10 +45,17 @@ def test_the_run_that_alone_leaves_more_than_noise_is_named() -> None:
         (1.0, 1.1, 5.1, 1.1, 1.0),  # no noise does that
         (1.0, 1.6, 3.6, 1.1, 1.0),  # the others are not at the floor
         (1.0, 1.0, 3.6, 1.0),  # too few others
+        (1.3, 1.3, 1.4, 1.3, 1.3),  # all are above it
     ],
 )
 def test_elsewhere_no_run_is_left_out(levels: tuple[float, ...]) -> None:
     assert found(*levels) is None
+
+
+def test_friction_that_differs_from_run_to_run_counts() -> None:
+    """Residuals alone are at the floor: what the runs' own friction costs is not."""
+    case: Any = SimpleNamespace(experiments=[], train=range(5))
+    assert lone_run(case, fit_of(1.4, 1.4, 1.5, 1.4, 1.4, own=0.3), FLOOR) is None
 
 
 def test_without_repeats_no_run_is_left_out() -> None:

@@ -109,7 +109,7 @@ def _draw_batch(
             for i, wanted in open_cases.items()
         }
         for i, (rig, strengths) in tuned(rigs).items():
-            if rig.kind not in LACKING or all(s.met or _is_enough(s, batch[0][1]) for s in strengths):
+            if rig.kind not in LACKING or _are_met(strengths, wanted_of[i]):
                 settled[i] = (rig, strengths)
                 del open_cases[i]
             else:
@@ -124,9 +124,11 @@ def _draw_batch(
     return len(batch)
 
 
-def _is_enough(strength: Strength, wanted: Wanted) -> bool:
-    """An effect at its physical limit counts where the limit lies within the range that was asked for."""
-    return strength.limited and strength.gap_noise >= wanted.strengths[0]
+def _are_met(strengths: Sequence[Strength], wanted: Wanted) -> bool:
+    """Whether the effects are as strong as was asked for. One at its physical limit counts where the limit lies within
+    its range."""
+    least = (wanted.strengths[0], wanted.second[0])
+    return all(s.met or (s.limited and s.gap_noise >= low) for s, low in zip(strengths, least, strict=False))
 
 
 def _description(rig: Rig) -> str:

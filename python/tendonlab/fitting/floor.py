@@ -20,6 +20,7 @@ from tendonlab.fitting.noise import RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, Floor, round
 from tendonlab.simulation.system import System
 
 AR_ORDER = 6
+NOTHING = 1e-6  # of rounding: readings that differ by less, but for a constant, repeat exactly
 LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatever was stated
 RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
@@ -36,7 +37,7 @@ class Sensitivities:
 
 def friction_groups(system: System, *, with_added: bool = False) -> list[list[int]]:
     """Indices of the friction parameters of each element that has friction: they scale together from run to run. A
-    bounded ratio that may be negative, such as an asymmetry, is a share of friction that scales already.
+    finite lower bound below 0, such as that of an asymmetry of the level, marks a share of friction that scales.
     `with_added`: also those of the friction effects that the system lacks, which a candidate may add."""
     info = system.info
     groups = []
@@ -108,8 +109,9 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
         cleaned = [d[c] for d, _ in pairs]
         ar[c], innovation = _autoregression(cleaned)
         rounding = rounding_of(case.dataset.signals[case.outputs[c]])
-        shown, least = _rms(cleaned), LEAST * float(case.noise[c])
-        sd[c] = max(innovation * max(1.0, rounding / shown) if shown > 0.0 else rounding, least)
+        shown = _rms([record - np.nanmean(record) for record in cleaned])
+        least, differs = LEAST * float(case.noise[c]), shown > NOTHING * rounding
+        sd[c] = max(innovation * max(1.0, rounding / shown) if differs else rounding, least)
         rms[c] = max(_rms([d[c] for d in differences]), rounding, least)
     return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
 

@@ -86,7 +86,7 @@ def _differs(lone: Lone | None) -> list[str]:
         return []
     return [
         f"{lone.name} alone leaves an error of {np.sqrt(lone.level):.2g} noise floors, the other training runs leave "
-        f"{np.sqrt(lone.others):.2g}: the verdict rests on those. Where a mechanism stops may depend on noise "
+        f"{np.sqrt(lone.others):.2g}: it does not decide. Where a mechanism stops may depend on noise "
         "alone, or something happened in that run: look at it."
     ]
 

@@ -38,14 +38,15 @@ def lone_run(case: Case, tuned: Fitted, floor: Floor) -> Lone | None:
     that one run is far above all noise. Only repeats tell a floor well enough."""
     if not floor.repeated or len(tuned.runs) < ENOUGH or tuned.mean_square < NEAR_FLOOR:
         return None
-    run = int(np.argmax([float(np.mean(np.square(r.residual))) for r in tuned.runs]))
-    level = float(np.mean(np.square(tuned.runs[run].residual)))
-    rest = _without(tuned, run)
-    if level > FAR_ALONE or rest > NO_GAP:
+    levels = [run.cost / len(run.residual) for run in tuned.runs]
+    run = int(np.argmax(levels))
+    level, rest = levels[run], _without(tuned, run)
+    if not NEAR_FLOOR < level < FAR_ALONE or rest > NO_GAP:
         return None
     return Lone(run, case.experiments[case.train[run]].name, level, rest)
 
 
 def _without(fit: Fitted, run: int) -> float:
-    """Mean square of the whitened residuals of all training experiments but one."""
-    return float(np.mean(np.square(np.concatenate([r.residual for k, r in enumerate(fit.runs) if k != run]))))
+    """Mean square of the whitened residuals of all training experiments but one, with what their own unknowns cost."""
+    others = [r for k, r in enumerate(fit.runs) if k != run]
+    return sum(r.cost for r in others) / sum(len(r.residual) for r in others)

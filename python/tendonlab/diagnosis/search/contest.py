@@ -141,7 +141,8 @@ def _worth_adding(
 ) -> bool:
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
     repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
-    Without repeats it must explain enough, or leave what may be noise. Near the floor, beyond the first effect and
+    With repeats, a further one must be no error of a shape. Without, it must explain enough, or leave what may be
+    noise. Near the floor, beyond the first effect and
     where it explains little, it must predict experiments that it was not fitted to."""
     near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
     if fitter.floor.repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:

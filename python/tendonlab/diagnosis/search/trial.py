@@ -14,7 +14,7 @@ STEADY, LOSSES = 2.0, 5.0
 MOST = 1e9  # nats: beyond, a gain says no more
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 TWIN = 3.0  # nats within which two effects say the same of these data
-HALF, ALONE_SHARE = 0.5, 0.35  # of the rest that a further effect must remove
+SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that an effect must remove
 HIDDEN = 100.0  # nats by which a weak effect must show behind a dominant one: errors of shapes gained 84
 
 
@@ -92,12 +92,12 @@ def bar_for_further_effect(fitter: Fitter) -> Bar:
 
 
 def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
-    """Whether the first trial removes half of what the base leaves above the sensors' noise; a third where no other
-    gains half as much. The error of a shape looks like one more effect, which removes less."""
+    """Whether the first trial removes half of what the base leaves above the known noise; 35 % where no other gains
+    half as much. The error of a shape looks like one more effect, which removes less."""
     rest, left = base.mean_square - 1.0, trials[0].fitted.mean_square - 1.0
     most = trials[0].evidence_gain
     alone = all(t.evidence_gain < 0.5 * most or most - t.evidence_gain < TWIN for t in trials[1:])
-    return left < rest * (1.0 - (ALONE_SHARE if alone else HALF))
+    return rest > 0.0 and left < rest * (1.0 - (ALONE_SHARE if alone else SHARE))
 
 
 def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> bool:
