@@ -91,5 +91,5 @@ def test_friction_that_changed_over_the_session_is_named() -> None:
 def test_a_run_that_alone_differs_is_named() -> None:
     (text,) = said(lone=Lone(2, "run-4", 3.61, 1.0))
     assert text.startswith(
-        "run-4 alone leaves an error of 1.9 noise floors, the other training runs leave 1: it does not"
+        "Of the training runs, run-4 alone leaves an error of 1.9 noise floors; the others leave 1. The verdict"
     )

@@ -84,10 +84,11 @@ def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
 def _differs(lone: Lone | None) -> list[str]:
     if lone is None:
         return []
+    error, rest = np.sqrt(lone.level), np.sqrt(lone.others)
     return [
-        f"{lone.name} alone leaves an error of {np.sqrt(lone.level):.2g} noise floors, the other training runs leave "
-        f"{np.sqrt(lone.others):.2g}: it does not decide. Where a mechanism stops may depend on noise "
-        "alone, or something happened in that run: look at it."
+        f"Of the training runs, {lone.name} alone leaves an error of {error:.2g} noise floors; the others leave "
+        f"{rest:.2g}. The verdict does not count {lone.name}. Where a mechanism stops may depend on noise alone, or "
+        "something happened in that run: look at it."
     ]
 
 

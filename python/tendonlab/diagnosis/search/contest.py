@@ -142,15 +142,14 @@ def _worth_adding(
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
     repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
     With repeats, a further one must be no error of a shape. Without, it must explain enough, or leave what may be
-    noise. Near the floor, beyond the first effect and
-    where it explains little, it must predict experiments that it was not fitted to."""
-    near_floor, first = base.mean_square < NEAR_FLOOR, trials[0].fitted
-    if fitter.floor.repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
+    noise. Near the floor, beyond the first effect and where it explains little, it must predict experiments that it
+    was not fitted to."""
+    near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
+    if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and _evidence_counts(fitter, base)
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
-    repeated = fitter.floor.repeated
     if repeated and further and not is_no_shape(base, trials, largest_gain):
         return False
     enough = repeated or explains_enough(base, trials)
