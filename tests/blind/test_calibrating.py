@@ -131,6 +131,18 @@ def test_sets_share_the_probability_of_all_of_them() -> None:
     assert found[0] / found[1] == pytest.approx(3.5)
 
 
+def test_a_set_becomes_as_much_less_likely_as_its_least_likely_effect() -> None:
+    """Else an element would be more probable than all of its effects together."""
+    of = Calibration(effects=Tempering(temperature=0.7, lapse=0.03))
+    sets = [{"effects": ["a"], "probability": 0.9}, {"effects": ["a", "b"], "probability": 0.08}]
+    raw = Verdict("effect", dict.fromkeys(VERDICTS, 0.2), {"a": 0.98, "b": 0.08}, sets, [])
+    found = of.applied(raw)
+    alone, both = (float(entry["probability"]) for entry in found.sets)
+    assert alone + both == pytest.approx(of.effects.of_one(0.98))
+    assert both == pytest.approx(found.effects["b"], rel=0.1)  # but for what makes them add up
+    assert both < 0.5 * 0.08
+
+
 def test_without_evidence_only_a_fault_of_the_data_is_impossible() -> None:
     raw = {"data_fault": 0.0, "no_gap": 0.0, "parameters_only": 1.0, "effect": 0.0, "unknown_effect": 0.0}
     found = Calibration(verdicts=Tempering(lapse=0.2)).of_verdicts(raw)

@@ -56,12 +56,19 @@ class Calibration:
 
     def applied(self, verdict: Verdict) -> Verdict:
         """The same answer with calibrated probabilities. Effects that the data cannot tell apart share that of their
-        group, and sets share that of all of them."""
+        group. Sets share that of all of them, each as much less or more as its least likely effect became."""
         effects = {name: self.effects.of_one(p) for name, p in verdict.effects.items()}
         for group in verdict.indistinguishable:
             effects |= self._shared({name: verdict.effects[name] for name in group})
-        shares = self._shared({str(k): float(entry["probability"]) for k, entry in enumerate(verdict.sets)})
-        sets = [{**entry, "probability": p} for entry, p in zip(verdict.sets, shares.values(), strict=True)]
+        raw = [float(entry["probability"]) for entry in verdict.sets]
+        changed = {name: effects[name] / p if p > 0.0 else 1.0 for name, p in verdict.effects.items()}
+        weight = [
+            p * min(changed.get(name, 1.0) for name in entry["effects"])
+            for p, entry in zip(raw, verdict.sets, strict=True)
+        ]
+        factor = self.effects.of_one(min(sum(raw), 1.0)) / sum(weight) if sum(weight) > 0.0 else 1.0
+        sets = [{**entry, "probability": factor * w} for entry, w in zip(verdict.sets, weight, strict=True)]
+        sets.sort(key=lambda entry: -float(entry["probability"]))
         return replace(verdict, probability=self.of_verdicts(verdict.probability), effects=effects, sets=sets)
 
     def _shared(self, raw: Mapping[str, float]) -> dict[str, float]:
