@@ -93,6 +93,17 @@ def compare_maps(ax: Axes, maps: Mapping[str, pd.DataFrame], *, title: str) -> A
     return ax
 
 
+def difference_of_maps(ax: Axes, first: pd.DataFrame, second: pd.DataFrame, *, label: str) -> Axes:
+    """Below Figs 10 to 12: the `second` map less the `first`, in the positive direction, with the sd of both means."""
+    one, other = (of[of["speed"] > 0] for of in (first, second))
+    spread = np.hypot(*(of["sd"].to_numpy() / np.sqrt(of["num_runs"].to_numpy()) for of in (one, other)))
+    apart = other["torque"].to_numpy() - one["torque"].to_numpy()
+    ax.axhline(0.0, color="0.8", lw=0.8)
+    ax.errorbar(one["speed"], 1e3 * apart, 1e3 * spread, fmt="o", ms=3, lw=0.8, color=COLOURS["D2M"])
+    ax.set(xlabel=SPEED, ylabel=label)
+    return ax
+
+
 def loads_of(ax: Axes, transmission: str, maps: Mapping[str, pd.DataFrame], *, title: str) -> Axes:
     """Figs 17, 18: one transmission under its four loads, both directions."""
     for load, mark in zip(LOADS, MARKS, strict=True):

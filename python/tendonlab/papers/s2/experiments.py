@@ -52,8 +52,10 @@ def cable_ramps(of: Constants, *, seed: int = 0) -> pd.DataFrame:
     return pd.DataFrame({"elongation": elongation, "rate": rates, "force": force}, index=index)
 
 
-def bushing_bench(of: Constants, *, seed: int = 0) -> dict[int, pd.DataFrame]:
+def bushing_bench(of: Constants, *, seed: int = 0, every: int = KEPT_EVERY) -> dict[int, pd.DataFrame]:
     """Fig. 11 by the whole procedure of the bench, by cable: theta, rad, velocity, rad/s, and force, N, at 2 Hz.
+
+    `every`: of 100 samples a second, the one in so many that is kept. Behind the filter, closer ones repeat each other.
 
     A PID controller sweeps the twin's joint, laid flat, over 0, 0.7, -0.7, 0 rad at 0.04 rad/s. Sensors of 5 N read the
     forces at the nuts, preload, damping and friction together; all signals pass the same filter of 1 Hz; the force
@@ -72,7 +74,7 @@ def bushing_bench(of: Constants, *, seed: int = 0) -> dict[int, pd.DataFrame]:
         read = run[f"F_act_{cable}"].to_numpy() + FORCE_SD * random.normal(size=len(run))
         force = remove_mean(filtered(RESOLUTION * np.round(read / RESOLUTION)))
         signals = {"theta": filtered(run["theta"].to_numpy()), "velocity": filtered(run["theta_rate"].to_numpy())}
-        found[cable] = pd.DataFrame({**signals, "force": force}, index=run.index)[apart].iloc[::KEPT_EVERY]
+        found[cable] = pd.DataFrame({**signals, "force": force}, index=run.index)[apart].iloc[::every]
     return found
 
 

@@ -62,8 +62,12 @@ def draw_cable(axes: Sequence[Axes], ramps: pd.DataFrame, fit: Estimate) -> Sequ
     return axes
 
 
-def draw_branches(ax: Axes, loop: pd.DataFrame, branches: Mapping[str, float], *, tension: float, cable: int) -> Axes:
-    """Fig. 11: force of a cable in its bushing against the joint angle: the loop, and the four branches of eq. 11."""
+def draw_branches(
+    axes: Sequence[Axes], loop: pd.DataFrame, branches: Mapping[str, float], *, tension: float, cable: int
+) -> Sequence[Axes]:
+    """Fig. 11: force of a cable in its bushing against the joint angle, the loop and the four branches of eq. 11;
+    below, what lies above the branches; on two axes."""
+    ax, left = axes
     ax.plot(loop["theta"], loop["force"], ".", ms=4, color=MUTED, rasterized=True, label="loop (twin)")
     law = bushing_law(branches)
     for sense, colour, text in ((1.0, BLUE, "v > 0"), (-1.0, RED, "v < 0")):
@@ -74,12 +78,16 @@ def draw_branches(ax: Axes, loop: pd.DataFrame, branches: Mapping[str, float], *
         meets = law.force(velocity=sense, wrap_angle=edge, load=tension)
         ax.plot(edge, meets, "o", mfc="white", mec=colour, ms=5)
         ax.annotate(f"$c_{i}$", (edge, float(meets)), textcoords="offset points", xytext=(6, 5), color=colour)
-    ax.set(
-        xlabel=r"joint angle $\theta$ (rad)", ylabel="bushing force (N)", title=f"Fig. 11  Cable {cable}, four branches"
-    )
+        one = loop[sense * loop["velocity"] > 0]
+        known = law.force(velocity=sense, wrap_angle=one["theta"].to_numpy(), load=tension)
+        left.plot(one["theta"], one["force"] - known, ".", ms=3, color=colour, rasterized=True)
+    left.axhline(0.0, color=INK, lw=0.6)
+    ax.set(ylabel="bushing force (N)", title=f"Fig. 11  Cable {cable}, four branches")
+    left.set(xlabel=r"joint angle $\theta$ (rad)", ylabel="less the\nbranches (N)")
     ax.legend(loc="lower left")
-    tidy(ax)
-    return ax
+    for one_of in axes:
+        tidy(one_of)
+    return axes
 
 
 def draw_split(ax: Axes, of: Constants, parts: Sequence[Mapping[str, np.ndarray]], theta: np.ndarray) -> Axes:

@@ -155,6 +155,14 @@ def draw_friction(ax: Axes, run: pd.DataFrame, *, without: pd.DataFrame | None =
     return ax
 
 
+def draw_excess(ax: Axes, run: pd.DataFrame, without: pd.DataFrame) -> Axes:
+    """Below Fig. 9b: friction of the four contacts less that `without` the Stribeck excess."""
+    for name, colour in CONTACT.items():
+        ax.plot(run.index, run[name] - without[name], color=colour, lw=1.0)
+    ax.set(xlabel="time (s)", ylabel="difference (N)")
+    return ax
+
+
 def draw_fit(axes: Sequence[Axes], read: pd.DataFrame, simulated: pd.DataFrame, *, name: str = "T22") -> Sequence[Axes]:
     """Fig. 12: a measured tension and the simulated one, and their difference, on two axes."""
     ax, left = axes
