@@ -3,22 +3,34 @@
 from tendonlab.diagnosis.confusions import CONFUSIONS, among, confusions
 from tendonlab.simulation.catalog import kinds, system_info
 
+TWO_INERTIA = system_info("two_inertia")
+
 
 def test_two_selected_effects_that_share_a_confusion_are_named_together() -> None:
-    (shared,) = among(["joint:stribeck", "motor:stribeck", "load:offset"])
+    (shared,) = among(TWO_INERTIA, ["joint:stribeck", "motor:stribeck", "load:offset"])
     assert set(shared.effects) == {"joint:stribeck", "motor:stribeck"}
     assert "the cable differently" in shared.separates
 
 
 def test_only_the_selected_ones_of_a_larger_confusion_are_named() -> None:
-    (shared,) = among(["actuation:offset", "joint:asymmetry"])
+    (shared,) = among(TWO_INERTIA, ["actuation:offset", "joint:asymmetry"])
     assert set(shared.effects) == {"actuation:offset", "joint:asymmetry"}
+    assert "cable stretch" in shared.separates
+
+
+def test_what_separates_causes_is_something_that_the_rig_has() -> None:
+    """A rigid joint has no cable that stretches; its asymmetry shows where its friction changes."""
+    (shared,) = among(system_info("rigid_joint"), ["actuation:offset", "joint:asymmetry"])
+    assert "cable" not in shared.separates
+    assert "share of the friction" in shared.separates
+    separates = [c.separates for c in among(system_info("servo_pendulum"), ["actuation:offset", "load:offset"])]
+    assert any("switched off" in words for words in separates)
 
 
 def test_one_effect_alone_is_confused_with_nothing_selected() -> None:
     for confusion in CONFUSIONS:
-        assert among(confusion.effects[:1]) == []
-    assert among([]) == []
+        assert among(TWO_INERTIA, confusion.effects[:1]) == []
+    assert among(TWO_INERTIA, []) == []
 
 
 def test_an_effect_is_mistaken_only_for_what_its_system_may_have() -> None:

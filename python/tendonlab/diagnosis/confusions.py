@@ -11,10 +11,20 @@ from tendonlab.simulation.catalog import SystemInfo
 @dataclass(frozen=True)
 class Confusion:
     """Causes that may explain the same data equally well, and what `separates` them. `effects` holds names such as
-    "joint:stribeck", or words (without a colon) for what is no effect."""
+    "joint:stribeck", or words (without a colon) for what is no effect. `where`, `unless`: an effect that the system
+    has, or has not, if this separates them there."""
 
     effects: tuple[str, ...]
     separates: str
+    where: str | None = None
+    unless: str | None = None
+
+    def of(self, info: SystemInfo) -> Confusion:
+        """With those of its causes that this system may have; with none where it does not hold."""
+        known = {None, *(e.name for e in info.effects)}
+        holds = self.where in known and (self.unless is None or self.unless not in known)
+        there = tuple(name for name in self.effects if name in known or ":" not in name)
+        return Confusion(there if holds else (), self.separates)
 
 
 _MOTOR_OR_JOINT = "motion that loads the cable differently: an added load, a torque chirp, one side held"
@@ -25,10 +35,37 @@ CONFUSIONS = (
     Confusion(
         ("actuation:offset", "motor:asymmetry", "joint:asymmetry"),
         "cable stretch under load; slow micro motion and standstill for the asymmetry",
+        where="motor:asymmetry",
+    ),
+    Confusion(
+        ("actuation:offset", "load:offset", "joint:asymmetry"),
+        "motion under which the dry friction changes, slow beside fast or light beside heavy load: an asymmetry is a "
+        "share of the friction, an offset stays; at one level of friction they are the same",
+        unless="motor:asymmetry",
+    ),
+    Confusion(
+        ("actuation:offset", "load:offset"),
+        "the motor switched off: an offset of the load stays, one of the motor goes",
+    ),
+    Confusion(
+        ("actuation:offset", "load:offset", "sensor.joint_angle:bias"),
+        "gravity at other angles and with another payload: a bias shifts the angle at which gravity acts, an offset "
+        "adds the same torque everywhere",
+    ),
+    Confusion(
+        ("actuation:offset", "sensor.output_torque:bias"),
+        "the load taken off: a bias of the sensor stays in its reading",
     ),
     Confusion(
         ("actuation:delay", "sensor.joint_angle:delay"),
         "measuring both motor and joint; the motor's signal alone cannot tell",
+        where="sensor.motor_angle:delay",
+    ),
+    Confusion(
+        ("actuation:delay", "sensor.joint_angle:delay"),
+        "a second reading of the motion, such as an accelerometer: in one reading a late command and a late sensor "
+        "look alike",
+        unless="sensor.motor_angle:delay",
     ),
     Confusion(
         ("cable:load_dependence", "gear:efficiency", "load:scale_error"),
@@ -39,6 +76,7 @@ CONFUSIONS = (
         ("stiction:hold", "joint:coulomb", "joint:viscous"),
         "pushes on the resting joint at several speeds, with their torque: dry friction of the joint resists up to a "
         "level, viscous friction by the speed, stiction of the guides not at all",
+        where="stiction:hold",
     ),
     Confusion(
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
@@ -64,16 +102,13 @@ CONFUSIONS = (
 
 def confusions(info: SystemInfo, effect: str) -> list[Confusion]:
     """The others of this system that are easily mistaken for `effect`, each with what separates them from it."""
-    known = {e.name for e in info.effects}
-    found = []
-    for confusion in CONFUSIONS:
-        others = tuple(name for name in confusion.effects if (name in known or ":" not in name) and name != effect)
-        if effect in confusion.effects and others:
-            found.append(Confusion(others, confusion.separates))
-    return found
+    here = [confusion.of(info) for confusion in CONFUSIONS if effect in confusion.effects]
+    rest = [Confusion(tuple(name for name in c.effects if name != effect), c.separates) for c in here]
+    return [confusion for confusion in rest if confusion.effects]
 
 
-def among(effects: Collection[str]) -> list[Confusion]:
-    """The confusions that two or more of `effects` share, each with those of its own that are among them."""
-    shared = [(tuple(name for name in c.effects if name in effects), c.separates) for c in CONFUSIONS]
-    return [Confusion(names, separates) for names, separates in shared if len(names) > 1]
+def among(info: SystemInfo, effects: Collection[str]) -> list[Confusion]:
+    """The confusions that two or more of `effects` share in this system, each with those of its own among them."""
+    here = [confusion.of(info) for confusion in CONFUSIONS]
+    shared = [Confusion(tuple(name for name in c.effects if name in effects), c.separates) for c in here]
+    return [confusion for confusion in shared if len(confusion.effects) > 1]

@@ -29,6 +29,7 @@ from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import Diagnosis
 
 OPEN = 0.02  # probability from which a rival of the first effect is worth an experiment
+MOST_RIVALS = 3  # an exact twin or two may come before the first rival that a motion can tell apart
 
 
 def answer(
@@ -73,7 +74,7 @@ def answer(
             "from_nominal": heldout.shrinkage(case, stages["nominal"], stages["with_effect"], floor, judged, rng),
             "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
         },
-        next_experiments=tuple(proposed + _measurements(verdict.indistinguishable)),
+        next_experiments=tuple(proposed + _measurements(case, verdict.indistinguishable)),
         references=references,
         caveats=caveats(case, search.final, stages, floor, judged, drift, lone),
         warnings=(
@@ -156,13 +157,14 @@ def _invisible(search: Search) -> tuple[str, ...]:
 
 
 def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
-    """Between the first effect and what comes next to it in its place, where that is still open."""
+    """Between the first effect and the likeliest of what is still open in its place that a motion separates from it."""
     if not search.rounds or (own := search.rounds[0].accepted) is None:
         return []
     share = search.rounds[0].probability
     rivals = [(share[t.effect], t.fitted) for t in search.rounds[0].trials if t is not own]
-    likeliest, other = max([*rivals, (share[None], search.tuned)], key=lambda pair: pair[0])
-    return advise(case, floor, own.fitted, other) if likeliest > OPEN else []
+    likeliest = sorted([*rivals, (share[None], search.tuned)], key=lambda pair: -pair[0])[:MOST_RIVALS]
+    proposals = (advise(case, floor, own.fitted, other) for probability, other in likeliest if probability > OPEN)
+    return next(filter(None, proposals), [])
 
 
 def _numbered(found: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], dict[str, pd.DataFrame]]:
@@ -171,12 +173,12 @@ def _numbered(found: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], dict[s
     return [{**row, "reference": name} for name, row in zip(references, found, strict=True)], references
 
 
-def _measurements(ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
+def _measurements(case: Case, ties: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
     """What is known to separate tied causes, whether or not the simulator can make it."""
     return [
         {"description": known.separates, "separates": list(known.effects), "expected_gain": None}
         for group in ties
-        for known in confusions.among(group)
+        for known in confusions.among(case.system.info, group)
     ]
 
 
