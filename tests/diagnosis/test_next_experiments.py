@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,10 +11,13 @@ import pytest
 
 from integrate.rig import joint
 from tendonlab import _core
-from tendonlab.diagnosis.answer import next_experiments
-from tendonlab.diagnosis.answer.motions import DURATION, EASE, RATE
-from tendonlab.diagnosis.answer.next_experiments import Loop, _loop, _run, _separation, advise
+from tendonlab.diagnosis.answer import motions, next_experiments
+from tendonlab.diagnosis.answer.motions import DURATION, EASE, RATE, Motion
+from tendonlab.diagnosis.answer.next_experiments import Loop, _gain, _logged, _loop, _run, _separation, advise
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
+from tendonlab.simulation.prepare import prepare
 
 LOOP = Loop(400.0, 40.0, "joint_angle")
 
@@ -40,7 +44,7 @@ def test_a_rig_is_driven_by_the_loop_of_its_replay() -> None:
 
 
 def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    gains = {"a": 12.345, "b": 9.9, "c": 40.0, "d": 11.0, "e": 900.0, "fails": 0.0}
+    gains = {"a": 12.345, "b": 2.9, "c": 40.0, "d": 11.0, "e": 900.0, "fails": 0.0}
 
     def separation(*given: Any) -> float:
         motion = given[4]
@@ -65,31 +69,63 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     assert advise(case("free"), floor, first, second) == []  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("shares", [(), (0.25, 1.0, 0.04)])
-def test_a_motion_separates_by_what_no_parameter_can_imitate(
-    shares: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Half the least squares of the difference, over noise, by parameters with their posterior as prior; samples that
-    depend on each other count as fewer."""
-    rng = np.random.default_rng(0)
-    outputs = rng.normal(size=(2, 3, 40))
-    gradient = rng.normal(size=(2, 3, 40))
-    runs = iter([{"outputs": outputs[0], "gradient": gradient}, {"outputs": outputs[1]}])
-    monkeypatch.setattr(next_experiments, "_run", lambda *_: next(runs))
-    free = [SimpleNamespace(index=k, slope=lambda x, k=k: (k + 2.0) * x) for k in range(2)]
-    precision = np.array([[3.0, 0.5], [0.5, 2.0]])
-    first: Any = SimpleNamespace(free=free, x=[1.0, 0.5], precision=precision)
-    floor: Any = SimpleNamespace(rms=np.array([0.5, np.nan, 2.0]), shares=shares)
-    motion: Any = None
-    found = _separation(case(), floor, first, motion, motion, LOOP)
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> Motion:
+    """Half a second of motion: few rows."""
+    monkeypatch.setattr(motions, "DURATION", 0.5)
+    return Motion("short", 2.0 + 3.0 * np.sin(9.0 * motions.instants()))
 
-    noise = np.array([0.5, 2.0]) / np.sqrt(np.array([0.25, 0.04]) if shares else 1.0)
-    difference = ((outputs[0] - outputs[1])[[0, 2]] / noise[:, None]).ravel()
-    columns = (gradient[:, [0, 2]] / noise[:, None] * np.array([2.0, 1.5])[:, None, None]).reshape(2, -1).T
-    root = np.linalg.cholesky(precision).T
-    design, target = np.vstack([columns, root]), np.concatenate([difference, np.zeros(2)])
-    theta = np.linalg.lstsq(design, target, rcond=None)[0]
-    assert found == pytest.approx(0.5 * np.sum((target - design @ theta) ** 2))
+
+def damped(fitter: Fitter, factor: float) -> Fitted:
+    """The bundled rig's simulator with other friction of the joint, as a fit."""
+    system = fitter.case.system
+    changed = {"joint_viscous": factor * system.parameters["joint_viscous"], "joint_coulomb": 0.5 * factor}
+    return fitter.fit(system.with_parameters(changed), solve=False)
+
+
+def test_a_motion_separates_by_what_no_parameter_can_imitate(fitter: Fitter, nominal: Fitted, short: Motion) -> None:
+    """Half the least squares of what the other model leaves more, its posterior as prior, its own unknowns integrated
+    out: by dense matrices."""
+    case, other = fitter.case, damped(fitter, 3.0)
+    loop = _loop(case)
+    assert loop is not None
+    found = _gain(case, fitter.floor, nominal, other, short, loop)
+
+    experiment = _logged(case, nominal, short, loop)
+    rig = replace(case, experiments=(experiment,), prepared=(prepare(experiment, case.system, case.replay),))
+    (there,), (own,) = (replace(fitter, case=rig).fit(of.system, solve=False).runs for of in (other, nominal))
+    root = np.linalg.cholesky(np.eye(len(there.residual)) + there.by_own @ there.by_own.T)
+    rows = np.linalg.solve(root, np.column_stack([there.residual - own.residual, there.jacobian]))
+    design = np.vstack([rows[:, 1:], np.linalg.cholesky(other.precision).T])
+    target = np.concatenate([rows[:, 0], np.zeros(design.shape[1])])
+    theta = np.linalg.lstsq(design, -target, rcond=None)[0]
+    assert found == pytest.approx(0.5 * np.sum((target + design @ theta) ** 2), rel=1e-6)
+    assert found > 0.1
+
+
+def test_a_motion_separates_no_model_from_itself_and_promises_what_holds_for_either(
+    fitter: Fitter, nominal: Fitted, short: Motion
+) -> None:
+    case, other = fitter.case, damped(fitter, 3.0)
+    loop = _loop(case)
+    assert loop is not None
+    assert _gain(case, fitter.floor, nominal, nominal, short, loop) == pytest.approx(0.0, abs=1e-9)
+    both = [_gain(case, fitter.floor, a, b, short, loop) for a, b in ((nominal, other), (other, nominal))]
+    assert _separation(case, fitter.floor, nominal, other, short, loop) == min(both)
+
+
+def test_a_motion_is_logged_as_the_rig_logs(fitter: Fitter, nominal: Fitted, short: Motion) -> None:
+    """With the columns and at the sampling rate of the logs; its command alone makes the motion again."""
+    case = fitter.case
+    like = case.experiments[case.train[0]]
+    loop = _loop(case)
+    assert loop is not None
+    made = _logged(case, nominal, short, loop)
+    assert list(made.data.columns) == list(like.data.columns)
+    assert np.median(np.diff(made.time)) == pytest.approx(np.median(np.diff(like.time)))
+    replayed = replace(case.system, controller=None).simulate(made, replay="free").outputs
+    off = (replayed[loop.output] - made.data[loop.output]).abs().max()
+    assert off < 0.01 * np.ptp(made.data[loop.output])  # what the loop commands between samples is not logged
 
 
 @pytest.mark.parametrize("payload", [0.0, 2.0])
@@ -103,7 +139,7 @@ def test_a_model_follows_a_motion_from_rest(payload: float) -> None:
     names = [s.name for s in system.info.outputs]
     of: Any = SimpleNamespace(system=system)
     rig: Any = SimpleNamespace(outputs=names, settings=lambda: _core.Settings(tolerance=1e-9))
-    found = _run(rig, of, motion, LOOP, [])["outputs"][names.index("joint_angle")]
+    found = _run(rig, of, motion, LOOP, time)["outputs"][names.index("joint_angle")]
     assert found[0] == pytest.approx(path[0])
     assert np.abs(np.diff(found[:3])).max() < 1e-4  # at rest
     speed, wanted = np.gradient(found, time), np.gradient(path, time)

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.interpolate import CubicSpline
 
 from tendonlab import _core
 from tendonlab.data.units import convert
 from tendonlab.diagnosis.answer.motions import Motion, eased, instants, motions
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.fitted import Fitted, Marginal, solved
 from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.problem import pose
+from tendonlab.simulation.prepare import prepare
+from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.signals import linear, smooth
 
-SEPARATES = 10.0  # nats below which an experiment separates nothing
+SEPARATES = 3.0  # nats below which an experiment separates nothing
 
 
 @dataclass(frozen=True)
@@ -65,29 +69,51 @@ def _loop(case: Case) -> Loop | None:
 
 
 def _separation(case: Case, floor: Floor, first: Fitted, second: Fitted, motion: Motion, loop: Loop) -> float:
-    """Half of min over parameters of |y_A - y_B - J theta|², over the noise floor, with the posterior of A as their
-    prior."""
-    seeds = [("parameter", f.index) for f in first.free]
-    a = _run(case, first, motion, loop, seeds)
-    b = _run(case, second, motion, loop, [])
-    shares = np.array(floor.shares)[case.measured] if floor.shares else np.ones(len(case.measured))
-    weight = (floor.rms[case.measured] / np.sqrt(shares))[:, None]
-    d = ((a["outputs"] - b["outputs"])[case.measured] / weight).ravel()
-    slopes = np.array([f.slope(x) for f, x in zip(first.free, first.x, strict=True)])
-    j = (a["gradient"][:, case.measured] / weight).reshape(len(seeds), -1).T * slopes
-    left = float(d @ d - (j.T @ d) @ np.linalg.solve(j.T @ j + first.precision, j.T @ d))
-    return 0.5 * max(0.0, left)
+    """What the motion is expected to bring whichever of the two is true: the lesser of both gains."""
+    return min(_gain(case, floor, a, b, motion, loop) for a, b in ((first, second), (second, first)))
 
 
-def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, seeds: list[tuple[str, int]]) -> dict[str, Any]:
-    """A model driven along a motion by the loop, from rest."""
+def _gain(case: Case, floor: Floor, true: Fitted, other: Fitted, motion: Motion, loop: Loop) -> float:
+    """Nats that the diagnosis is expected to count against the `other` where `true` made the log: half of
+    min over parameters of |r + J theta|², r what the other leaves more, with its posterior as their prior."""
+    experiment = _logged(case, true, motion, loop)
+    rig = replace(case, experiments=(experiment,), prepared=(prepare(experiment, case.system, case.replay),))
+    under = replace(floor, sd=other.levels.tolist())
+    (left,), (own,) = (pose(rig, under, of.system, added=of.added).linearise().runs for of in (other, true))
+    marginal = Marginal.of(left, other.shares)
+    r, moving = marginal.residual(left.residual - own.residual), ~np.array(other.at_bound, dtype=bool)
+    j, prior = marginal.jacobian[:, moving], other.precision[np.ix_(moving, moving)]
+    gain = 0.5 * float(r @ r - (j.T @ r) @ solved(j.T @ j + prior, j.T @ r))
+    return max(0.0, gain) if np.isfinite(gain) else 0.0
+
+
+def _logged(case: Case, of: Fitted, motion: Motion, loop: Loop) -> Experiment:
+    """The motion as a rig that `of` is would log it, without noise, sampled as the first training experiment."""
+    like = case.experiments[case.train[0]]
+    time = np.arange(0.0, instants()[-1], float(np.median(np.diff(like.time))))
+    made = _run(case, of, motion, loop, time)["outputs"]
+    path = CubicSpline(instants(), eased(motion.path))
+    seen = CubicSpline(time, made[case.outputs.index(loop.output)])
+    effort = loop.proportional * (path(time) - seen(time)) + loop.derivative * (path(time, 1) - seen(time, 1))
+    controller, info = case.system.controller, case.system.info
+    limit = controller.limit if controller else np.inf
+    signals = dict(zip(case.outputs, made, strict=True)) | {info.inputs[0].name: np.clip(effort, -limit, limit)}
+    signals |= {} if controller is None else {controller.reference: path(time)}
+    data = pd.DataFrame({n: signals.get(n, 0.0 * time) for n in like.data.columns}, index=pd.Index(time, name="t"))
+    row = info.with_role("payload")
+    added = {row.name: motion.payload} if row is not None and motion.payload else {}
+    return Experiment(name="next", data=data, conditions=like.conditions, add=added, holds={info.inputs[0].name: False})
+
+
+def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, time: np.ndarray) -> dict[str, Any]:
+    """A model driven along a motion by the loop, from rest, read at `time`."""
     system = of.system
     if motion.payload:
         system = system.with_parameters(motion.payload_on(system))
     c = case.outputs.index(loop.output)
     axis = system.info.outputs[c].axis or 0
     shape, _, _ = _core.rigid_motion(system.kind, system.values(), system.active())
-    time, path = instants(), eased(motion.path)
+    path = eased(motion.path)
     core = _core.Experiment(
         kind=system.kind,
         time=time.tolist(),
@@ -101,11 +127,10 @@ def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, seeds: list[tuple[s
             reference_weight=1.0,
             limit=system.controller.limit if system.controller else np.inf,
             sample_time=0.0,
-            reference=smooth(time, path),
+            reference=smooth(instants(), path),
             disturbance=_core.Signal(),
         ),
         position=[path[0] * s / shape[axis] for s in shape],
         velocity=[0.0] * len(shape),
     )
-    flags, settings = system.active(keep_zero=True), case.settings()
-    return dict(_core.simulate(system.kind, system.values(), flags, core, seeds, settings))
+    return dict(_core.simulate(system.kind, system.values(), system.active(keep_zero=True), core, [], case.settings()))
