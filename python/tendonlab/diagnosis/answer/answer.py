@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats
+from tendonlab.diagnosis.answer.explore import explore
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
@@ -49,11 +50,11 @@ def answer(
     levels = _levels(search, nominal, stages, floor, drift, lone)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
-    records = where.PortRecords(case, stages["with_effect"], judged)
     held_out = _per_experiment(case, stages, floor, judged)
-    rng = np.random.default_rng(seed)
     how = notes.details(case, floor, nominal, search, drift) | _steps(case, search, steps)
-    proposed, references = _numbered(_next(case, floor, search))
+    records = where.PortRecords(case, stages["with_effect"], judged)
+    located = _where(case, stages["refitted"], floor, records, verdict)
+    proposed, references = _what_next(case, floor, search, verdict, located["regimes"])
     return Diagnosis(
         dataset=case.dataset.name,
         system=case.system.kind,
@@ -63,18 +64,15 @@ def answer(
         calibrated=calibration.holds(case.system.kind, runs=len(case.train)),
         replay=notes.replay(case),
         gap=_gap(case, stages, floor),
-        where=_where(case, stages["refitted"], floor, records, verdict),
+        where=located,
         effects=findings(fitter, search, verdict.effects, stages["refitted"], judged, seed),
         sets=tuple(verdict.sets),
         selected=search.selected,
         explained=levels.explained,
         indistinguishable=tuple(tuple(group) for group in verdict.indistinguishable),
         invisible=_invisible(search),
-        shrinkage={
-            "from_nominal": heldout.shrinkage(case, stages["nominal"], stages["with_effect"], floor, judged, rng),
-            "from_refitted": heldout.shrinkage(case, stages["refitted"], stages["with_effect"], floor, judged, rng),
-        },
-        next_experiments=tuple(proposed + _measurements(case, verdict.indistinguishable)),
+        shrinkage=_shrinkage(case, stages, floor, judged, seed),
+        next_experiments=proposed,
         references=references,
         caveats=caveats(case, search.final, stages, floor, judged, drift, lone),
         warnings=(
@@ -140,6 +138,16 @@ def _gap(case: Case, stages: dict[str, Replayed], floor: Floor) -> dict[str, dic
     }
 
 
+def _shrinkage(
+    case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int], seed: int
+) -> dict[str, dict[str, Any]]:
+    rng = np.random.default_rng(seed)
+    return {
+        f"from_{stage}": heldout.shrinkage(case, stages[stage], stages["with_effect"], floor, judged, rng)
+        for stage in ("nominal", "refitted")
+    }
+
+
 def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> dict[str, Any]:
     """Held-out rms of every output after the refit and after each effect that was added, as `steps`."""
     steps = [
@@ -165,6 +173,16 @@ def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
     likeliest = sorted([*rivals, (share[None], search.tuned)], key=lambda pair: -pair[0])[:MOST_RIVALS]
     proposals = (advise(case, floor, own.fitted, other) for probability, other in likeliest if probability > OPEN)
     return next(filter(None, proposals), [])
+
+
+def _what_next(
+    case: Case, floor: Floor, search: Search, verdict: Verdict, regimes: Sequence[Mapping[str, Any]]
+) -> tuple[tuple[dict[str, Any], ...], dict[str, pd.DataFrame]]:
+    """The proposed experiments, best first, and the references of those that are motions, by name."""
+    motions, references = _numbered(_next(case, floor, search))
+    is_unknown = verdict.verdict == "unknown_effect"
+    explored = explore(regimes, notes.units(case), repeated=floor.repeated) if is_unknown else []
+    return (*motions, *explored, *_measurements(case, verdict.indistinguishable)), references
 
 
 def _numbered(found: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], dict[str, pd.DataFrame]]:

@@ -10,6 +10,7 @@ from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.words import capital, gain_words, phrase, separation
 
 _NOT_TIED = "No candidates are tied. These motions would test the selected effect against its closest competitor."
+_UNKNOWN = "The library explains too little. These measurements show what the unknown cause follows."
 _GAIN = (
     "Expected evidence: how far the simulator expects the experiment to favour the true explanation, in nats. About 10 "
     "nats decide; beyond 100 the size no longer matters."
@@ -24,8 +25,8 @@ def next_steps(diagnosis: Diagnosis) -> list[Block]:
     items = [
         (capital(str(entry["description"])), _purpose(entry, diagnosis.system)) for entry in diagnosis.next_experiments
     ]
-    corrects = diagnosis.verdict == "data_fault"
-    why = [] if diagnosis.indistinguishable or corrects else [Text(text=_NOT_TIED, brief=True)]
+    text = {"data_fault": "", "unknown_effect": _UNKNOWN}.get(diagnosis.verdict, _NOT_TIED)
+    why = [Text(text=text, brief=True)] if text and not diagnosis.indistinguishable else []
     gains = any(entry.get("expected_gain") is not None for entry in diagnosis.next_experiments)
     note = [Text(text=_GAIN, note=True)] if gains else []
     return [*why, Points(items=items, style="numbered", brief=True), *note]
