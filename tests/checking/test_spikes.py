@@ -1,8 +1,9 @@
 """Outliers are found in motion, alone and in pairs, and corners of a motion are none."""
 
 import numpy as np
+import pytest
 
-from tendonlab.checking.spikes import outliers
+from tendonlab.checking.spikes import _are_kicks, outliers
 
 TIME = np.arange(0.0, 10.0, 0.01)
 CHIRP = 0.5 * np.sin(2 * np.pi * (0.1 * TIME + 0.1 * TIME**2))  # up to 2.1 Hz: 0.07 rad from sample to sample
@@ -79,3 +80,12 @@ def test_what_is_frequent_belongs_to_the_signal() -> None:
     many[20:960:28] += 0.5  # 34
     assert outliers(few).sum() == 28
     assert not outliers(many).any()
+
+
+@pytest.mark.parametrize(
+    ("sizes", "kicks"), [([0.5, 0.51, 0.49, 0.5], True), ([0.5, 0.9, 0.2, 0.7], False), ([0.5], False), ([], False)]
+)
+def test_spikes_of_an_input_that_are_all_of_one_size_are_kicks_of_the_controller(
+    sizes: list[float], kicks: bool
+) -> None:
+    assert _are_kicks(np.array(sizes)) is kicks

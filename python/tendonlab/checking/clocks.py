@@ -20,6 +20,8 @@ STANDS_OUT = 2.0  # times the nats of any experiment that is not late: what the 
 MIDDLE = 0.6745  # sd that half of all normal errors exceed
 ROUNDS = 3  # of common lag and scatter
 SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
+BEHIND = "a diagnosis treats this lag as the effect delay"
+AHEAD = "no delay explains this: either the inputs are stamped late, or the simulator lacks something that looks alike"
 UNKNOWN = 10.0  # s: a lag of which nothing is known
 
 
@@ -76,13 +78,13 @@ def _all_late(
         single = len(lags.channels) > 1 and not together
         what = " and ".join(lags.channels) if together else lags.channels[c]
         verb = _verb(seconds, not together or len(lags.channels) == 1)
+        meaning = BEHIND if seconds > 0 else AHEAD
         yield Finding(
             problem="clock",
             signal=lags.channels[c] if single else None,
             alternatives=() if single else (*inputs, *lags.channels),
             seconds=seconds,
-            detail=f"{what} {verb} the inputs by {_time(seconds)} in all experiments; a diagnosis treats this lag as "
-            "the effect delay",
+            detail=f"{what} {verb} the inputs by {_time(seconds)} in all experiments; {meaning}",
         )
 
 

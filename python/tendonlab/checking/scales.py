@@ -21,6 +21,7 @@ GAUSS_NEWTON, NUDGE = 3, 1e-4  # steps to the least of a narrow valley, and the 
 REFINED = 4  # of the best, which are looked at closely
 SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, beyond which factors are looked for
 EXPLAINED = 0.7  # level of the residual beyond which an equation explains too little to judge by: half the power
+MENDED = 0.7  # share of the level of a bad equation that a right factor must at most leave, where no belief is strained
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
@@ -67,10 +68,19 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
+    if base.strain < STRAINED and not _mends(best.fit.level, base.level, told):
+        return []
     beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
     if _fitted(equation, fine, best.signals, beyond, share).cost < best.fit.cost + LEAST_GAIN:
         return []  # a channel that suits at any such size is explained away, not explained
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
+
+
+def _mends(level: np.ndarray, before: np.ndarray, told: np.ndarray) -> bool:
+    """Whether any equation that balances badly balances better. One that balances well anyway, as that of a stiff cable
+    does, may gain many nats from a factor that no other equation asks for."""
+    suspect = told & (before >= SUSPECT)
+    return not suspect.any() or bool(np.any(level[suspect] < MENDED * before[suspect]))
 
 
 def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:

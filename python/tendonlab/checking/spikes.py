@@ -21,6 +21,8 @@ CORNER = 2.0  # times by how much the steps before and after a sample differ, wi
 NEAR = ((1, 2), (2, 3), (1, 3), (1, 2))
 END = 5.0  # times by how much any other sample differs from its path, of one at either end
 FOURTH = 70.0**0.5  # sd of the fourth difference of noise of sd 1
+FEWEST = 3  # spikes that show a size
+KICK = 0.05  # of the size of spikes, by which those may differ that a controller makes
 MOST = 0.03  # of a record: what is more frequent belongs to the signal
 
 
@@ -29,12 +31,32 @@ Marks = Mapping[tuple[str, str], np.ndarray]  # which samples are outliers, by e
 
 def marks(dataset: Dataset) -> Marks:
     """The outliers of every input and output."""
-    return {
+    found = {
         (e.name, name): (spikes if role == "input" else outliers)(e.data[name].to_numpy(dtype=float))
         for e in dataset.experiments
         for name in e.data.columns
         if (role := dataset.signals[name].role) in ("input", "output")
     }
+    kicking = {name for name in dataset.inputs if _are_kicks(_sizes(dataset, name, found))}
+    return {key: np.zeros_like(mask) if key[1] in kicking else mask for key, mask in found.items()}
+
+
+def _sizes(dataset: Dataset, name: str, found: Marks) -> np.ndarray:
+    """How far each spike of an input stands out of its neighbours."""
+    sizes = [np.zeros(0)]
+    for e in dataset.experiments:
+        at = np.flatnonzero(found.get((e.name, name), np.zeros(0)))
+        if len(at):
+            values = e.data[name].to_numpy(dtype=float)
+            sizes.append(np.abs(values[at] - 0.5 * (values[at - 1] + values[at + 1])))
+    return np.concatenate(sizes)
+
+
+def _are_kicks(sizes: np.ndarray) -> bool:
+    """Whether spikes of an input are all of one size: a controller that takes the difference of a coarse reading kicks
+    by one step of the reading. Errors of logging differ."""
+    middle = float(np.median(sizes)) if len(sizes) >= FEWEST else 0.0
+    return middle > 0.0 and float(np.median(np.abs(sizes - middle))) < KICK * middle
 
 
 def outliers(values: np.ndarray) -> np.ndarray:
@@ -116,20 +138,17 @@ def spikes(values: np.ndarray) -> np.ndarray:
 
 def without_outliers(dataset: Dataset) -> Dataset:
     """The dataset with its outliers taken out: missing in outputs, interpolated in inputs."""
-    return replace(dataset, experiments=tuple(_cleaned(dataset, e) for e in dataset.experiments))
+    marked = marks(dataset)
+    return replace(dataset, experiments=tuple(_cleaned(dataset, e, marked) for e in dataset.experiments))
 
 
-def _cleaned(dataset: Dataset, experiment: Experiment) -> Experiment:
+def _cleaned(dataset: Dataset, experiment: Experiment, marked: Marks) -> Experiment:
     data = experiment.data.copy()
     for name in data.columns:
-        if dataset.signals[name].role not in ("input", "output"):
-            continue
-        driven = dataset.signals[name].role == "input"
-        values = data[name].to_numpy(dtype=float)
-        found = spikes(values) if driven else outliers(values)
-        if not found.any():
+        found = marked.get((experiment.name, name))
+        if found is None or not found.any():
             continue
         data.loc[found, name] = np.nan
-        if driven:
+        if dataset.signals[name].role == "input":
             data[name] = data[name].interpolate(method="index", limit_direction="both")
     return replace(experiment, data=data)

@@ -8,13 +8,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from tendonlab import _core
-from tendonlab.diagnosis.search.refit import refit
+from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
 from tendonlab.diagnosis.search.trial import Trial, counted_alike
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
+
+CLOSE = 0.1  # share of the best gain behind which a trial may only have ended in a worse optimum
+SAME = 0.1  # nats that are no difference
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,25 @@ class Workshop:
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
         shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
         trials = [*first, *(trial for tried in shown for trial in tried)]
-        return counted_alike(trials, base)
+        return self._levelled(fitter, base, counted_alike(trials, base))
+
+    def _levelled(self, fitter: Fitter, base: Fitted, trials: list[Trial]) -> list[Trial]:
+        """The trials, those close behind the first also from where it ended, and the first from where they did."""
+        for _ in range(2):
+            if not trials:
+                break
+            first, most = trials[0].fitted, trials[0].evidence_gain
+            close = [t for t in trials[1:] if SAME < most - t.evidence_gain < CLOSE * most]
+            fits = list(self.pool.map(lambda t: restarted(fitter, base, t.fitted, first), close))  # noqa: B023
+            better = {
+                t.effect: Trial.of(t.effect, fit, base)
+                for t, fit in zip(close, fits, strict=True)
+                if fit is not t.fitted
+            }
+            if not better:
+                break
+            trials = counted_alike([better.get(t.effect, t) for t in trials], base)
+        return trials
 
 
 def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> list[Trial]:
