@@ -32,9 +32,12 @@ def predicts_better(fitter: Fitter, base: Fitted, extended: Fitted) -> bool:
 
 
 def _scores(fitter: Fitter, model: Fitted, *, odd: bool) -> np.ndarray:
-    """Log score of each experiment on one half of its blocks, after a refit to the other half alone."""
+    """Log score of each experiment on one half of its blocks, after a refit to the other half alone. That half may not
+    hold the beginning of a run: where its initial state foretells worse than that of the whole fit, the latter counts.
+    """
     under = fitter.left_by(model)
     learning, judging = (replace(under, case=fitter.case.on_half(odd=half)) for half in (not odd, odd))
     learnt = learning.fit(model.system, added=model.added, initial=model.initial, max_iterations=ITERATIONS)
-    predicted = judging.fit(learnt.system, added=model.added, initial=learnt.initial, solve=False)
-    return predicted.by_experiment(predicted.scores)
+    starts = (learnt.initial, model.initial)
+    predicted = [judging.fit(learnt.system, added=model.added, initial=each, solve=False) for each in starts]
+    return np.maximum(*(each.by_experiment(each.scores) for each in predicted))
