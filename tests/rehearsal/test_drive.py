@@ -10,8 +10,8 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.fitting.case import make_case
-from tendonlab.rehearsal.drive import command_of
 from tendonlab.rehearsal.rig import TOLERANCE, SimulatedRig, simulated_rig
+from tendonlab.simulation.command import command_of
 from tendonlab.simulation.records import Controller, Experiment, NominalParameter, SignalSpec
 
 JOINT = {"inertia": 0.012, "gravity_torque": 0.9, "torque_constant": 0.35, "coulomb": 0.05, "viscous": 0.02}

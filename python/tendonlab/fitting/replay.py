@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of
+from tendonlab.simulation.command import command_of
 from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.system import System
 
 UNEXPLAINED, SHOWN = 0.1, 10.0  # share of the effort that no model explains, and by how many times the noise it shows
+SAME_CLOCK = 0.05  # of the controller's period, by which the logs' may differ for the two to be compared
 DAMPING = 1.0  # ratio of the loop: critical
+CONTRADICTED = 0.1  # of the rms command, by which a stated controller may miss what was logged; right ones miss 0.014
 RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection
 
 
 def choose_replay(dataset: Dataset, system: System) -> Replay:
-    """Free run with the known controller; else injection, the same for every model; else, without a measured motor, the
-    logged command alone.
+    """Free run with the known controller, unless the logged command contradicts the controller; else injection, the
+    same for every model; else, without a measured motor, the logged command alone.
 
     The injection is so stiff that an effort of 10 % of the command's, which no model explains, moves the simulated
     sensor by ten times its noise: stiffer, and the effects drown in that noise; softer, and what no model explains
     adds up. At least half of the bandwidth that holds 95 % of the motion's power, at most what the samples resolve. The
     damper must outweigh friction that falls with speed: else the simulator sticks and slips where the rig slides."""
     controller = dataset.controller
-    if controller is not None:
+    if controller is not None and missed_command(dataset, system) <= CONTRADICTED:
         return Replay("controller", controller.kp, controller.kd, controller.measured)
     first = next((s.name for s in system.info.outputs if s.axis == 0), None)
     command = system.info.inputs[0].name if system.info.commanded else None  # another input may stand in for it
@@ -44,6 +49,27 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
     noise = noise_of(dataset.signals[first], [values for _, values in moved])
     omega = max(slowest, min(fastest, float(np.sqrt(UNEXPLAINED / SHOWN * command_rms / (inertia * noise)))))
     return Replay("injection", float(inertia * omega**2), float(2.0 * DAMPING * inertia * omega), first)
+
+
+def missed_command(dataset: Dataset, system: System) -> float:
+    """How far the stated controller's command is from the logged one: the rms of the difference over that of the
+    command, the median over the training experiments. 0 where nothing can be compared: without controller, clock or
+    logs, or where the logs are sampled more slowly than the controller reads."""
+    controller, shares = dataset.controller, []
+    if controller is None or controller.sample_time <= 0 or not system.info.commanded:
+        return 0.0
+    command = system.info.inputs[0].name
+    for e in dataset.train:
+        wanted = {command, controller.measured, controller.reference} | ({controller.disturbance} - {None})
+        values = e.data[[str(name) for name in wanted]].to_numpy(dtype=float) if wanted <= set(e.data.columns) else None
+        steps = np.abs(np.diff(e.time) / controller.sample_time - 1.0)
+        if values is None or np.median(steps) > SAME_CLOCK or not np.isfinite(values).all(axis=1).any():
+            continue
+        filled = replace(e, data=e.data.interpolate(method="index", limit_direction="both"))
+        asked = command_of(controller, filled, filled.data[controller.measured].to_numpy(dtype=float))
+        logged = filled.data[command].to_numpy(dtype=float)
+        shares.append(float(np.sqrt(np.mean((logged - asked) ** 2) / max(np.mean(logged**2), 1e-300))))
+    return float(np.median(shares)) if shares else 0.0
 
 
 def _frequency_below(time: np.ndarray, values: np.ndarray, share: float = 0.95) -> float:

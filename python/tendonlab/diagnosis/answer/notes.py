@@ -15,6 +15,7 @@ from tendonlab.diagnosis.search.select import Search
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import RUN_TO_RUN_UNKNOWN, Floor
+from tendonlab.fitting.replay import CONTRADICTED, missed_command
 from tendonlab.fitting.uncertainty import FEWEST_EXPERIMENTS
 from tendonlab.simulation.catalog import unit
 
@@ -28,11 +29,23 @@ def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
     """What weakens the answer."""
     return [
         *case.dataset.warnings,
+        *_on_the_controller(case),
         *_on_the_floor(floor),
         *_on_the_split(case),
         *_on_the_fits(search),
         *_on_the_failed(search),
         *_on_the_refuted(search),
+    ]
+
+
+def _on_the_controller(case: Case) -> list[str]:
+    missed = missed_command(case.dataset, case.system)
+    if missed <= CONTRADICTED:
+        return []
+    name = case.system.info.inputs[0].name
+    return [
+        f"The stated controller does not command the logged {name}: the two differ by {100 * missed:.0f} % (rms). The "
+        "logged command was replayed instead. Check gains, reference and sample_time; d/dt is a backward difference."
     ]
 
 

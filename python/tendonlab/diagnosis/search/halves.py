@@ -40,4 +40,4 @@ def _scores(fitter: Fitter, model: Fitted, *, odd: bool) -> np.ndarray:
     learnt = learning.fit(model.system, added=model.added, initial=model.initial, max_iterations=ITERATIONS)
     starts = (learnt.initial, model.initial)
     predicted = [judging.fit(learnt.system, added=model.added, initial=each, solve=False) for each in starts]
-    return np.maximum(*(each.by_experiment(each.scores) for each in predicted))
+    return np.asarray(np.maximum(*(each.by_experiment(each.scores) for each in predicted)))

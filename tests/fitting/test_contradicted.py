@@ -1,0 +1,46 @@
+"""A stated controller that does not command what was logged is not believed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+import tendonlab as tl
+from tendonlab.cli.demo import bundled
+from tendonlab.data import Dataset
+from tendonlab.fitting.replay import choose_replay, missed_command
+
+
+@pytest.fixture(scope="module")
+def rig() -> Dataset:
+    dataset = tl.load(bundled())
+    assert dataset.controller is not None
+    return dataset
+
+
+def stated(rig: Dataset, **changes: Any) -> Dataset:
+    """The rig with other words about its controller."""
+    assert rig.controller is not None
+    return replace(rig, controller=replace(rig.controller, **changes))
+
+
+def test_the_true_controller_is_believed(rig: Dataset) -> None:
+    assert missed_command(rig, rig.system()) < 1e-3
+    assert choose_replay(rig, rig.system()).kind == "controller"
+
+
+@pytest.mark.parametrize(("name", "factor"), [("kd", 0.0), ("kp", 1.5)])
+def test_one_that_the_log_contradicts_is_not(rig: Dataset, name: str, factor: float) -> None:
+    wrong = stated(rig, **{name: factor * getattr(rig.controller, name)})
+    assert missed_command(wrong, wrong.system()) > 0.1
+    assert choose_replay(wrong, wrong.system()).kind == "injection"
+
+
+@pytest.mark.parametrize("sample_time", [0.0, 0.0005])
+def test_nothing_is_compared_where_the_log_cannot_tell(rig: Dataset, sample_time: float) -> None:
+    """In continuous time, or where the controller reads more often than the logs."""
+    unknown = stated(rig, sample_time=sample_time, kd=0.0)
+    assert missed_command(unknown, unknown.system()) == 0.0
+    assert choose_replay(unknown, unknown.system()).kind == "controller"
