@@ -99,10 +99,10 @@ def _on_the_failed(search: Search) -> list[str]:
 def _on_the_refuted(search: Search) -> list[str]:
     if not search.refuted:
         return []
-    return [
-        f"Not established: {', '.join(search.refuted)}. The training experiments speak for it, but on held-out ones "
-        f"it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance."
-    ]
+    chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
+    against = "held-out ones are foretold worse with it" if search.fitter.floor.repeated else chance
+    names = ", ".join(search.refuted)
+    return [f"Not established: {names}. The training experiments speak for it, but {against}."]
 
 
 def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list[str]:
