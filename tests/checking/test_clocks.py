@@ -55,6 +55,13 @@ def test_of_two_late_runs_each_is_judged_against_the_rest() -> None:
     assert [f.experiment for f in found if f.blocks] == ["d"]
 
 
+@pytest.mark.parametrize(("other", "blocks"), [(-0.05, False), (0.05, True)])
+def test_many_experiments_some_ahead_and_some_late_are_no_matter_of_clocks(other: float, blocks: bool) -> None:
+    """Two of five that are late alike may well be."""
+    found = findings([[0.0, 0.0, 0.05, other, 0.0]])
+    assert any(f.blocks for f in found) == blocks
+
+
 def test_outputs_that_are_late_together_take_a_plural() -> None:
     (found,) = findings([[0.0, 0.0, 0.05, 0.0, 0.0]] * 2)
     assert "angle_1 and angle_2 lag the inputs" in found.detail

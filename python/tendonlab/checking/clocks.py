@@ -17,6 +17,7 @@ RESOLVED = 0.25  # of a sample: no lag is known better
 MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
 SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others
 STANDS_OUT = 2.0  # times the nats of any experiment that is not late: what the simulator lacks suits lags in all
+MOST_LATE = 0.25  # share of the experiments of which some may lag and others lead
 MIDDLE = 0.6745  # sd that half of all normal errors exceed
 ROUNDS = 3  # of common lag and scatter
 SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
@@ -39,6 +40,8 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     late &= lags.gain > SUITS
     others = lags.gain[~late.any(axis=0) & np.isfinite(lags.gain)]
     late &= lags.gain > STANDS_OUT * np.max(others, initial=0.0)
+    if late.any(axis=0).sum() > MOST_LATE * len(names) and np.any(away[late] > 0) and np.any(away[late] < 0):
+        late[:] = False  # so many clocks do not go wrong both ways: it is something that the simulator lacks
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
     return [*found, *_all_late(lags, inputs, shared, total, step)]
 
