@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 
 from tendonlab.diagnosis.search import refit as refits
-from tendonlab.diagnosis.search.refit import SKETCH, _cooled, more_evident
+from tendonlab.diagnosis.search.refit import SKETCH, _cooled, more_evident, restarted
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
 
 
 def with_evidence(fitted: Fitted, evidence: float) -> Fitted:
@@ -37,6 +38,20 @@ def test_a_fit_whose_derivatives_exploded_outbids_nothing(
 
 def test_a_failed_fit_leaves_the_best_one(nominal: Fitted) -> None:
     assert more_evident(nominal, None) is nominal
+
+
+def test_exact_twins_end_with_one_evidence(fitter: Fitter, nominal: Fitted) -> None:
+    """A delay of the joint's sensor from a poor place, beside one that was fitted; and a better fit stays as it is."""
+    name = "sensor.joint_angle:delay"
+    added = nominal.system.with_effects({name: {"delay": 1e-3}})
+    leader = fitter.settled(fitter.fit(added, added=(name,)))
+    astray = added.with_parameters({"joint_inertia": 3.0 * added.parameters["joint_inertia"]})
+    poor = fitter.fit(astray, added=(name,), solve=False)
+    found = restarted(fitter, nominal, leader, poor)
+    best = leader.counted().evidence
+    assert poor.counted().evidence < best - 1.0
+    assert found.counted().evidence == pytest.approx(best, abs=0.1)
+    assert restarted(fitter, nominal, poor, leader).counted().evidence >= best
 
 
 class Fits:

@@ -12,12 +12,13 @@ from tendonlab.simulation.catalog import SystemInfo
 class Confusion:
     """Causes that may explain the same data equally well, and what `separates` them. `effects` holds names such as
     "joint:stribeck", or words (without a colon) for what is no effect. `where`, `unless`: an effect that the system
-    has, or has not, if this separates them there."""
+    has, or has not, if this separates them there. `odd`: the one that is told from the others, which stay alike."""
 
     effects: tuple[str, ...]
     separates: str
     where: str | None = None
     unless: str | None = None
+    odd: str | None = None
 
     def of(self, info: SystemInfo) -> Confusion:
         """With those of its causes that this system may have; with none where it does not hold."""
@@ -42,6 +43,7 @@ CONFUSIONS = (
         "motion under which the dry friction changes, slow beside fast or light beside heavy load: an asymmetry is a "
         "share of the friction, an offset stays; at one level of friction they are the same",
         unless="motor:asymmetry",
+        odd="joint:asymmetry",
     ),
     Confusion(
         ("actuation:offset", "load:offset"),
@@ -51,6 +53,7 @@ CONFUSIONS = (
         ("actuation:offset", "load:offset", "sensor.joint_angle:bias"),
         "gravity at other angles and with another payload: a bias shifts the angle at which gravity acts, an offset "
         "adds the same torque everywhere",
+        odd="sensor.joint_angle:bias",
     ),
     Confusion(
         ("actuation:offset", "sensor.output_torque:bias"),
@@ -109,6 +112,6 @@ def confusions(info: SystemInfo, effect: str) -> list[Confusion]:
 
 def among(info: SystemInfo, effects: Collection[str]) -> list[Confusion]:
     """The confusions that two or more of `effects` share in this system, each with those of its own among them."""
-    here = [confusion.of(info) for confusion in CONFUSIONS]
+    here = [c.of(info) for c in CONFUSIONS if c.odd is None or c.odd in effects]
     shared = [Confusion(tuple(name for name in c.effects if name in effects), c.separates) for c in here]
     return [confusion for confusion in shared if len(confusion.effects) > 1]

@@ -37,5 +37,5 @@ def explore(regimes: Sequence[Mapping[str, Any]], units: Mapping[str, str], *, r
 
 def _there(name: str, limits: Sequence[float], units: Mapping[str, str]) -> str:
     """Such as "at a joint position of 0.66 to 0.89 rad"."""
-    low, high = (f"{value:.2g}" for value in limits)
+    low, high = (f"{value:.2g}".replace("-", "−") for value in limits)
     return f"at a {name.replace('_', ' ')} of {low} to {high} {units.get(name, '').replace('*', '·')}".rstrip()

@@ -44,7 +44,7 @@ def more_evident(best: Fitted | None, fit: Fitted | None) -> Fitted | None:
     return fit if best is None or fit.counted().evidence > best.counted().evidence else best
 
 
-def restarted(fitter: Fitter, base: Fitted, fit: Fitted, leader: Fitted) -> Fitted:
+def restarted(fitter: Fitter, base: Fitted, leader: Fitted, fit: Fitted) -> Fitted:
     """The better of `fit` and a fit of the same model from where the `leader`, another extension of `base`, ended: two
     effects that say the same must not differ by the optimum that each of them found."""
     shared = {f.name: leader.system.parameters[f.name] for f in base.free}

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 
 from tendonlab import _core
 from tendonlab.diagnosis.search.refit import refit, restarted
@@ -66,7 +67,7 @@ class Workshop:
                 break
             first, most = trials[0].fitted, trials[0].evidence_gain
             close = [t for t in trials[1:] if SAME < most - t.evidence_gain < CLOSE * most]
-            fits = list(self.pool.map(lambda t: restarted(fitter, base, t.fitted, first), close))  # noqa: B023
+            fits = list(self.pool.map(partial(restarted, fitter, base, first), [t.fitted for t in close]))
             better = {
                 t.effect: Trial.of(t.effect, fit, base)
                 for t, fit in zip(close, fits, strict=True)
