@@ -12,7 +12,8 @@ from tendonlab.simulation.system import System
 
 SLOWEST = ("cable_joint", "ccsrm")  # simulated for 0.3 s only, which holds reversals as well
 TOLERANCE = 1e-10
-STEP = 1e-3  # of each parameter: the differences are of order four, and their noise is 1e-7 of what changes
+TIGHT = 1e-12  # of the differenced runs
+STEP = 1e-3  # of each parameter: the differences are of order four
 STENCILS = (  # weights of the values at so many steps: central, or to one side of a bound
     {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12},
     {0: -25 / 12, 1: 4.0, 2: -3.0, 3: 4 / 3, 4: -1 / 4},
@@ -63,7 +64,7 @@ def difference(system: System, effect: str, row: ParameterInfo, step: float) -> 
     value = system.parameters[row.name]
     stencil = next(of for of in STENCILS if all(row.lower <= value + k * step <= row.upper for k in of))
     moved = {k: system.with_parameters({row.name: value + k * step}) for k in stencil}
-    values = [w * simulate(moved[k], effect).table for k, w in stencil.items()]
+    values = [w * simulate(moved[k], effect, tolerance=TIGHT).table for k, w in stencil.items()]
     return np.asarray(sum(values) / step)
 
 

@@ -72,10 +72,12 @@ def test_bushings_stick_and_slip_as_the_closed_forms_do() -> None:
 @pytest.mark.parametrize("effects", [{}, SINE, DRY, HELD, {**SINE, **DRY, **HELD}])
 @pytest.mark.parametrize("volts", [0.01, 0.5, 5.0])
 def test_friction_does_not_chatter(volts: float, effects: dict) -> None:
-    """Two swings: each port stops and lets go at each reversal, which is four times, and perhaps once at the start."""
+    """Two swings: each port stops and lets go at each reversal, which is four times, and perhaps once at the start. No
+    more than one attempt a sample fails, where the curvature of the voltage jumps."""
     done = run(s2.system(RIG).with_effects(effects), T, {"voltage": volts * SWING}, tolerance=1e-8)
     assert done.events <= 2 * (4 + 1) + 2
-    assert done.rejected < 0.05 * done.attempts
+    assert done.rejected < len(T)
+    assert done.attempts < 4 * len(T)
 
 
 def test_friction_of_the_guides_feeds_no_motion() -> None:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 import tendonlab as tl
 from integrate.rig import differences, relative, run
 
-TIGHT = 1e-10
+TIGHT = 1e-11
 SERVO = {
     "inertia": 0.005,
     "armature": 0.003,

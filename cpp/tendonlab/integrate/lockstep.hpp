@@ -5,7 +5,7 @@
 #include "tendonlab/integrate/simulation.hpp"
 
 namespace tendonlab::integrate {
-template <template <class> class Of, class Tableau = Rodas4>
+template <template <class> class Of, class Tableau = Rodas5P>
 class Lockstep {
   using One = Simulation<Of, double>;
   using System = Of<Lanes>;
@@ -32,7 +32,7 @@ class Lockstep {
         taken(l, Step<StateOf<Of<double>, double>>{
                      lane(static_cast<int>(l), step.from), lane(static_cast<int>(l), step.to),
                      lane(static_cast<int>(l), step.first), lane(static_cast<int>(l), step.second),
-                     lane(static_cast<int>(l), step.error)});
+                     lane(static_cast<int>(l), step.third), lane(static_cast<int>(l), step.error)});
   }
 
  private:

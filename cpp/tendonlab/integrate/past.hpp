@@ -22,7 +22,7 @@ class Past {
   void add(const Step<Y>& s, double start, double h, double taken, int axis, double keep) {
     const auto j = static_cast<std::size_t>(axis);
     const auto part = [&](const auto& of) {
-      return Curve{of(s.from.at), of(s.to.at), of(s.first.at), of(s.second.at)};
+      return Curve{of(s.from.at), of(s.to.at), of(s.first.at), of(s.second.at), of(s.third.at)};
     };
     pieces.push_back({start, start + taken, h, segment_written, part([&](const auto& at) { return at.position[j]; }),
                       part([&](const auto& at) { return at.velocity[j]; })});
@@ -32,11 +32,8 @@ class Past {
   void split() { ++segment_written; }
   /// Readings have reached the next kink.
   void advance() { ++segment_read; }
-  /// The acceleration at `now`; `continues`: no kink since the last one.
-  void arrive(const T& at_present, double now, bool continues) {
-    jerk = continues && now > present ? (at_present - acceleration) / (now - present) : T(0.0);
-    acceleration = at_present, present = now;
-  }
+  /// The acceleration at `now` and its rate.
+  void arrive(const T& at_present, const T& rate, double now) { acceleration = at_present, jerk = rate, present = now; }
 
   /// Position and velocity at time `then`; `y`, `rate` are those at `now`.
   template <class S>
@@ -58,10 +55,11 @@ class Past {
 
  private:
   struct Curve {
-    T from, to, first, second;
+    T from, to, first, second, third;
     template <class S>
     S at(const S& s) const {
-      return lift<S>(from) + s * (lift<S>(T(to - from)) + (1.0 - s) * (lift<S>(first) + s * lift<S>(second)));
+      return lift<S>(from) +
+             s * (lift<S>(T(to - from)) + (1.0 - s) * (lift<S>(first) + s * (lift<S>(second) + s * lift<S>(third))));
     }
   };
   struct Piece {

@@ -11,6 +11,11 @@ namespace tendonlab::integrate {
 template <class T>
 using PieceOf = std::conditional_t<in_lanes<T>, std::array<int, Lanes::count>, int>;
 
+/// More than the rounding of an instant after a delay is added and taken off again.
+inline double rounding(double time) {
+  return 1e-15 * (1.0 + std::fabs(time));
+}
+
 struct Signal {
   std::vector<double> knots;                        ///< start of each piece, s, increasing
   std::vector<std::array<double, 4>> coefficients;  ///< value, slope, half curvature, ... in time from the knot
@@ -31,13 +36,13 @@ struct Signal {
   }
   /// Moves `piece` to the one that holds at `time`; a held signal keeps it, as a mode of the step.
   void follow(double time, int& piece) const {
-    if (!holds) piece = locate(time, piece);
+    if (!holds) piece = locate(reached(time), piece);
   }
   void follow(const Lanes& time, PieceOf<Lanes>& piece) const {
     if (holds) return;
     double each[Lanes::count];
     time.store(each);
-    for (std::size_t l = 0; l < piece.size(); ++l) piece[l] = locate(each[l], piece[l]);
+    for (std::size_t l = 0; l < piece.size(); ++l) piece[l] = locate(reached(each[l]), piece[l]);
   }
   double start_of(int piece) const { return knots[static_cast<std::size_t>(piece)]; }
   Lanes start_of(const PieceOf<Lanes>& piece) const {
@@ -103,6 +108,8 @@ struct Signal {
   static constexpr double inf_time = 1e300;
 
  private:
+  /// What begins at a knot, up to rounding, is in the piece that begins there.
+  static double reached(double time) { return time + rounding(time); }
   /// The derivative of that order (-1: the integral) of the piece. Only numbers go through the polynomial: whatever `t`
   /// depends on follows by the chain rule.
   template <int order, class S, class Piece>

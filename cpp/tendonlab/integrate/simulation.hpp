@@ -7,7 +7,7 @@
 #include "tendonlab/integrate/saltation.hpp"
 
 namespace tendonlab::integrate {
-template <template <class> class Of, class T, class Tableau = Rodas4>
+template <template <class> class Of, class T, class Tableau = Rodas5P>
 class Simulation {
   using System = Of<T>;
   using Values = Of<double>;
@@ -49,7 +49,8 @@ class Simulation {
   struct Attempt {
     double length = 0;
     bool lands = false;       ///< ends on a jump of the inputs or on the last sample
-    bool pauses = false;      ///< ends on a knot of a smooth input
+    bool pauses = false;      ///< ends on a knot of a smooth input,
+    double knot = 0;          ///< this one
     bool explicitly = false;  ///< may be an explicit step: h reaches beyond what the inputs allow
   };
   void begin() {
@@ -76,7 +77,7 @@ class Simulation {
     kink = drive.next_kink(t);
     settle(resting);
     refresh();
-    arrive(false);
+    arrive();
   }
   bool done() const { return !(t < end); }
   /// What to try next.
@@ -93,19 +94,19 @@ class Simulation {
     if (next.lands)
       next.length = reach;
     else if (pausing > 0 && !retakes)
-      next.pauses = pause_at_knot(next.length);
+      pause_at_knot(next);
     next.explicitly = next.length < h && next.length <= explicit_reach;
     return next;
   }
   /// Accepts the step or not, and passes the event or the jump of the inputs that it ends on.
   template <class Record>
   void take(const Attempt& tried, const Step<Y>& step, Trajectory& trajectory, Record&& record) {
-    const double length = tried.length, wish = growth(step);
+    const double length = tried.length, wish = tried.explicitly ? growth<Kutta>(step) : growth<Tableau>(step);
     if (!tried.explicitly) explicit_reach *= RETRY;
     if (!(wish > 0)) {  // rejected
       ++trajectory.rejected;
       const double shorter = length * std::max(0.15, -wish), knot = drive.next_knot(t + resolved()) - t;
-      if (length > knot && shorter < knot && !drive.bends()) pausing = PAUSES;
+      if (length > knot && shorter < knot) pausing = patience, patience = std::min(2 * patience, MOST_PAUSES);
       if (tried.explicitly)
         explicit_reach = shorter;
       else
@@ -121,18 +122,20 @@ class Simulation {
            PortModes<Values, double>{plain_contact, plain_frame}, drive);
     if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
     y = first.mode >= 0 ? step.at(first.share) : step.to;
-    t = first.mode < 0 && tried.lands ? std::min(kink, end) : t + taken;
+    t = first.mode >= 0 ? t + taken : tried.lands ? std::min(kink, end) : tried.pauses ? tried.knot : t + taken;
     y.at.time = T(t);
-    if (pausing > 0) --pausing;
+    if (pausing > 0)
+      --pausing;
+    else
+      patience = FEWEST_PAUSES;
     h = tried.lands || tried.pauses || tried.explicitly ? std::max(h, length * wish) : length * wish;
     if (first.mode >= 0) {
       ++trajectory.events;
       pass_event(first);
       h = 0.25 * length;
     }
-    const bool continues = first.mode < 0 && t < kink;
     if (first.mode < 0 && t >= kink) pass_kink();
-    arrive(continues);
+    arrive();
   }
   const Frame<Values, double>& modes_now() const { return plain_frame; }
   const Drive<T>& inputs() const { return drive; }
@@ -147,17 +150,19 @@ class Simulation {
   };
   static constexpr double on_guard = 1e-13, past_guard = 1e-14;
   static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
-  static constexpr int PAUSES = 16;      ///< steps that end on knots after one that passed a knot has failed
+  /// Steps that end on knots after one that passed a knot has failed: twice as many each time, until one succeeds.
+  static constexpr int FEWEST_PAUSES = 16, MOST_PAUSES = 1024;
 
   /// The shortest time that counts.
   double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
 
   /// Within a piece of a smooth input a step is far more exact than one that passes a knot.
-  bool pause_at_knot(double& length) const {
-    const double knot = drive.next_knot(t + resolved()) - t;
-    const bool pauses = length > 0.95 * knot;
-    if (pauses) length = knot;
-    return pauses;
+  void pause_at_knot(Attempt& next) const {
+    const double knot = drive.next_knot(t + resolved());
+    if (!(next.length > 0.95 * (knot - t))) return;
+    next.pauses = true, next.knot = knot;
+    // The whole step is in the piece before the knot: at the knot the next one begins.
+    next.length = knot - t - 4 * rounding(knot);
   }
   /// The step ends beyond an event: the next attempt is to end on the event.
   void aim(const Crossing& first, double length, Trajectory& trajectory) {
@@ -172,7 +177,15 @@ class Simulation {
       shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
   }
 
+  template <int degree>
+  static double root_of(double x) {
+    if constexpr (degree % 2 == 0 && degree > 2)
+      return root_of<degree / 2>(std::sqrt(x));
+    else
+      return degree == 2 ? std::sqrt(x) : std::pow(x, 1.0 / degree);
+  }
   /// By how much the next step may grow (> 0), or minus the factor by which this one must shrink.
+  template <class Method>
   double growth(const Step<Y>& s) const {
     constexpr int judged = systems::stated<System>;
     double sum = 0;
@@ -195,9 +208,9 @@ class Simulation {
         });
       }
     });
-    const double mean_square = sum / (settings.tolerance * settings.tolerance * counted);
+    const double mean_square = sum * square(Method::error_weight / settings.tolerance) / counted;
     if (!(mean_square < 1e300)) return -0.15;
-    const double factor = 0.9 / std::sqrt(std::sqrt(std::sqrt(std::max(mean_square, 1e-12))));
+    const double factor = 0.9 / root_of<2 * (Method::error_order + 1)>(std::max(mean_square, 1e-12));
     return mean_square <= 1.0 ? std::min(6.0, factor) : -factor;
   }
 
@@ -313,10 +326,16 @@ class Simulation {
     refresh();
   }
   /// Where the loop is late by less than the stepper resolves, it needs the acceleration instead.
-  void arrive(bool continues) {
+  void arrive() {
     if (!drive.remembers || drive.lateness() > Past<T>::shortest) return;
     const auto axis = static_cast<std::size_t>(drive.from.loop.axis);
-    drive.past.arrive(rate(system, y, frame, drive).acceleration[axis], t, continues);
+    const double soon = std::max(1e-3 * h, 1e-8);
+    const auto acceleration_at = [&](const Y& at) { return rate(system, at, frame, drive).acceleration[axis]; };
+    Y ahead = y;
+    add(ahead, 1.0, change(system, y, frame, drive, soon));
+    ahead.at.time = T(t + soon);
+    const T now = acceleration_at(y), then = acceleration_at(ahead);
+    drive.past.arrive(now, (then - now) * (1.0 / soon), t);
   }
   /// The scale of each memory follows the friction level that the memory replaces.
   void refresh() {
@@ -353,7 +372,8 @@ class Simulation {
   Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
   double explicit_reach = Signal::inf_time;  ///< longest step that an explicit method takes as exactly
-  int pausing = 0;                           ///< steps that still end on knots
+  int pausing = 0;                           ///< steps that still end on knots,
+  int patience = FEWEST_PAUSES;              ///< and how many shall after the next failure
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?
   double memory_level[slots<System>] = {};

@@ -17,27 +17,29 @@ void add(Y& y, double s, const Y& k) {
 template <class S, class F>
 using Blend = std::conditional_t<in_lanes<S>, S, F>;
 
-/// A step and its dense output: from + s (to - from + (1-s)(first + s second)), s from 0 to 1: what does not move stays
-/// where it is, to the last bit.
+/// A step and its dense output: from + s (to - from + (1-s)(first + s (second + s third))), s from 0 to 1: what does
+/// not move stays where it is, to the last bit.
 template <class Y>
 struct Step;
 template <class F, int dof, int nz>
 struct Step<State<F, dof, nz>> {
   using Y = State<F, dof, nz>;
-  Y from, to, first, second, error;
+  Y from, to, first, second, third, error;
   /// The state at the share `s` of the step; its time is left to the caller.
   template <class S>
   State<Blend<S, F>, dof, nz> at(const S& s) const {
-    const auto blend = [&](const F& a, const F& b, const F& c, const F& d) {
-      return a + s * ((b - a) + (1.0 - s) * (c + s * d));
+    const auto blend = [&](const F& a, const F& b, const F& c, const F& d, const F& e) {
+      return a + s * ((b - a) + (1.0 - s) * (c + s * (d + s * e)));
     };
     State<Blend<S, F>, dof, nz> y;
     for (std::size_t j = 0; j < dof; ++j) {
-      y.at.position[j] = blend(from.at.position[j], to.at.position[j], first.at.position[j], second.at.position[j]);
-      y.at.velocity[j] = blend(from.at.velocity[j], to.at.velocity[j], first.at.velocity[j], second.at.velocity[j]);
+      y.at.position[j] = blend(from.at.position[j], to.at.position[j], first.at.position[j], second.at.position[j],
+                               third.at.position[j]);
+      y.at.velocity[j] = blend(from.at.velocity[j], to.at.velocity[j], first.at.velocity[j], second.at.velocity[j],
+                               third.at.velocity[j]);
     }
     for (std::size_t i = 0; i < nz; ++i)
-      y.memory[i] = blend(from.memory[i], to.memory[i], first.memory[i], second.memory[i]);
+      y.memory[i] = blend(from.memory[i], to.memory[i], first.memory[i], second.memory[i], third.memory[i]);
     return y;
   }
 };
@@ -45,8 +47,8 @@ struct Step<State<F, dof, nz>> {
 /// A step without its derivatives.
 template <class Y>
 auto values(const Step<Y>& s) {
-  return Step<std::decay_t<decltype(values(s.from))>>{values(s.from), values(s.to), values(s.first), values(s.second),
-                                                      values(s.error)};
+  return Step<std::decay_t<decltype(values(s.from))>>{values(s.from),   values(s.to),    values(s.first),
+                                                      values(s.second), values(s.third), values(s.error)};
 }
 template <int dof, int nz>
 const auto& values(const Step<State<double, dof, nz>>& s) {
@@ -96,11 +98,12 @@ template <class Tableau, class System, class T, class Inputs>
   Y k[Tableau::stages];
   for (int i = 0; i < Tableau::stages; ++i) k[i] = stage<Tableau>(i, system, y, frame, in, h, blocks, solver, k);
   // Stiffly accurate: the last row of A, then the error.
-  Step<Y> s{y, y, {}, {}, k[Tableau::stages - 1]};
+  Step<Y> s{y, y, {}, {}, {}, k[Tableau::stages - 1]};
   for (int j = 0; j < Tableau::stages; ++j) {
     add(s.to, j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0, k[j]);
     add(s.first, Tableau::D[0][j], k[j]);
     add(s.second, Tableau::D[1][j], k[j]);
+    add(s.third, Tableau::D[2][j], k[j]);
   }
   s.to.at.time = y.at.time + h;
   return s;
@@ -135,7 +138,7 @@ template <class Tableau, class System, class T, class Inputs>
     k[i] = change(system, at, frame, in, h);
   }
   // The last stage stands at the end of the step. The dense output is the cubic through both ends and their rates.
-  Step<Y> s{y, at, k[0], {}, {}};
+  Step<Y> s{y, at, k[0], {}, {}, {}};
   Y rise = at;
   add(rise, -1.0, y);
   add(s.first, -1.0, rise);
