@@ -58,7 +58,7 @@ def test_an_effect_that_is_not_established_ranks_three_temperatures_behind_none(
 @pytest.mark.parametrize(("square", "temperature"), [(0.5, 4.0), (6.0, 24.0)])
 def test_what_the_best_model_leaves_heats_the_odds(nominal: Fitted, square: float, temperature: float) -> None:
     trials = [trial("a", 60.0, whitened_square=square), trial("b", 40.0, whitened_square=square + 5.0)]
-    found = Round.of(nominal, [], trials, established={"a", "b"}, bar=DETECT, accepted=trials[0]).probability
+    found = Round.of(nominal, [], trials, established={"a", "b"}, bar=DETECT, accepted=trials[0], failed={}).probability
     assert np.log(found["a"] / found["b"]) == pytest.approx(20.0 / temperature)
 
 
@@ -346,7 +346,8 @@ def test_far_behind_is_a_candidate_that_promises_little_at_tuned_and_at_believed
 ) -> None:
     chosen = [Screened(name, gain, ({},), 1.0) for name, gain in zip("ab", here, strict=True)]
     believed = [
-        Screened(name, gain or 0.0, ({},), 1.0, gain is not None) for name, gain in zip("ab", there, strict=True)
+        Screened(name, gain or 0.0, ({},), 1.0, "" if gain is not None else "stopped")
+        for name, gain in zip("ab", there, strict=True)
     ]
     assert [s.far_behind for s in contest._behind(chosen, believed)] == behind
 

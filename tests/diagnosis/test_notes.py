@@ -56,9 +56,9 @@ def test_a_held_out_experiment_that_gets_no_better_is_a_warning() -> None:
 
 def test_effects_that_no_fit_succeeded_with_or_that_were_not_tried_are_warnings(fitter: Fitter, twin_case: Any) -> None:
     fitted = fitter.fit(twin_case.system, max_iterations=1)
-    contest = Round((), (), (), {None: 1.0}, None, set(), failed=("joint:coulomb", "joint:stribeck"))
+    contest = Round((), (), (), {None: 1.0}, None, set(), failed={"joint:coulomb": "it stopped"})
     search = Search(fitter, tuned=fitted, steps=(), rounds=(contest,))
-    said = "No fit succeeded with joint:coulomb, joint:stribeck, which does not exclude them."
+    said = "No fit succeeded with joint:coulomb, which does not exclude it: it stopped."
     assert said in notes.warnings(twin_case, fitter.floor, search)
     (warning,) = notes.not_asked(twin_case, search, ["joint:presliding"])
     assert warning.startswith("Asked for and not tried: joint:presliding (")

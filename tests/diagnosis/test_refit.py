@@ -25,19 +25,37 @@ def with_evidence(fitted: Fitted, evidence: float) -> Fitted:
 
 
 @pytest.mark.parametrize(
-    ("evidences", "expected"), [((math.inf, 5.0), 5.0), ((math.nan,), None), ((3.0, 4.0), 4.0), ((4.0, 3.0), 4.0)]
+    ("evidences", "expected"), [((5.0, math.inf), 5.0), ((5.0, math.nan), 5.0), ((3.0, 4.0), 4.0), ((4.0, 3.0), 4.0)]
 )
 def test_a_fit_whose_derivatives_exploded_outbids_nothing(
-    nominal: Fitted, evidences: tuple[float, ...], expected: float | None
+    nominal: Fitted, evidences: tuple[float, ...], expected: float
 ) -> None:
     best = None
     for evidence in evidences:
         best = more_evident(best, with_evidence(nominal, evidence))
-    assert (best.evidence if best else None) == expected
+    assert best is not None
+    assert best.evidence == expected
 
 
-def test_a_failed_fit_leaves_the_best_one(nominal: Fitted) -> None:
-    assert more_evident(nominal, None) is nominal
+def test_where_no_fit_succeeds_the_reason_is_told(nominal: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The last fit's, that of derivatives that exploded, or the screen's where that had the candidate fail already."""
+    nothing: Any = None
+    monkeypatch.setattr(refits, "strained", lambda *_: False)
+    outcomes: list[Any] = [NumericalError("a"), NumericalError("b"), NumericalError("c")]
+    monkeypatch.setattr(refits, "_fit", lambda *_, **__: raised(outcomes.pop(0)))
+    with pytest.raises(NumericalError, match=r"^c$"):
+        refits.refit(nothing, nothing, Screened("x", 1.0, ({}, {}), 1.0), pace=0.0)
+    assert not outcomes
+    outcomes = [with_evidence(nominal, math.nan)] * 2
+    with pytest.raises(NumericalError, match="derivatives"):
+        refits.refit(nothing, nothing, Screened("x", 1.0, ({},), 1.0), pace=0.0)
+
+
+def raised(outcome: Any) -> Any:
+    """The outcome of a fit: itself, or raised."""
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
 
 
 def test_exact_twins_end_with_one_evidence(fitter: Fitter, nominal: Fitted) -> None:
@@ -122,17 +140,16 @@ def test_the_start_from_believed_values_leaves_out_what_was_tuned(monkeypatch: p
         ([fit_of(cost=51.0)], "sketch", 1),
         ([fit_of(cost=49.0)], "settled", 1),
         ([fit_of(cost=49.0, converged=False), fit_of(cost=30.0)], "settled", 2),
-        ([NumericalError("no")], None, 1),
     ],
 )
 def test_a_sketch_that_reaches_its_goal_is_finished(
-    fits: list[Any], found: str | None, asked: int, monkeypatch: pytest.MonkeyPatch
+    fits: list[Any], found: str, asked: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
     monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
     fitter: Any = Fits(*fits)
     made: Any = refits._fit(fitter, tuned(), {"b": {}}, None, pace=0.0)
-    assert (made[0] if made else None) == found
+    assert made[0] == found
     assert len(fitter.asked) == asked
     assert fitter.asked[0]["added"] == ("a", "b")
     assert (fitter.asked[0]["max_iterations"], fitter.asked[0]["goal"]) == (SKETCH, 50.0)
@@ -159,7 +176,7 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
     monkeypatch.setattr(refits, "strained", lambda *_: pulled)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, simulated), pace=0.0)
+    found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, "" if simulated else "stopped"), pace=0.0)
     assert tried == nominal
     assert found is not None
 

@@ -18,7 +18,7 @@ from tendonlab.diagnosis.search.contest import Round, next_effect, probabilities
 from tendonlab.diagnosis.search.rivals import Place, drop_effects, improve
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect
-from tendonlab.diagnosis.search.workshop import Workshop
+from tendonlab.diagnosis.search.workshop import Refitted, Workshop
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
@@ -101,7 +101,7 @@ def test_a_rival_is_the_best_other_trial_that_is_established_and_not_far_behind(
 
     def rival(*trials: Trial) -> Trial | None:
         established = {t.effect for t in trials if DETECT.passed(t)}
-        contest = Round.of(others, (), trials, established=established, bar=DETECT, accepted=trials[0])
+        contest = Round.of(others, (), trials, established=established, bar=DETECT, accepted=trials[0], failed={})
         return Place(others, trials[0], contest).rival()
 
     holder, near, far = trial(STRIBECK, 100.0), trial(DELAY, 70.0), trial("motor:stribeck", 40.0)
@@ -118,7 +118,9 @@ def test_a_rival_takes_over_where_it_is_clearly_better(
     others = replace(nominal, added=(ASYMMETRY, "load:offset"))
     base = replace(nominal, added=(STRIBECK, *others.added))
     holder, rival = trial(STRIBECK, 100.0), trial(DELAY, 100.0 + ahead)
-    contest = Round.of(others, (), (holder, rival), established={STRIBECK, DELAY}, bar=DETECT, accepted=holder)
+    contest = Round.of(
+        others, (), (holder, rival), established={STRIBECK, DELAY}, bar=DETECT, accepted=holder, failed={}
+    )
     place = Place(others, holder, contest)
     with ThreadPoolExecutor(1) as pool:
         shop = Workshop(pool, _core.Cancel(), progress=False, library=())
@@ -154,7 +156,7 @@ def test_a_rival_with_one_more_effect_wins_by_evidence_and_by_predicting_halves(
 def test_a_rival_takes_the_place_and_not_the_companions(trial: Callable[..., Trial], nominal: Fitted) -> None:
     others = replace(nominal, added=(ASYMMETRY,))
     holder, rival = trial(STRIBECK, 100.0), trial(DELAY, 120.0)
-    contest = Round.of(others, (), (rival, holder), established={DELAY}, bar=DETECT, accepted=holder)
+    contest = Round.of(others, (), (rival, holder), established={DELAY}, bar=DETECT, accepted=holder, failed={})
     place = Place(others, holder, contest).with_rival(rival)
     assert place.key == (frozenset({ASYMMETRY}), DELAY)
     assert place.round.accepted is rival
@@ -168,9 +170,11 @@ def test_a_place_is_contested_anew_where_the_others_had_ended_in_a_wrong_optimum
     """The others, started where they ended with the effect, do without it nearly as well: its contest meant nothing."""
     monkeypatch.setattr(rivals, "_without", lambda *args: nominal)
     monkeypatch.setattr(rivals.Trial, "of", classmethod(lambda cls, effect, *models: trial(effect, gain)))
-    shop: Any = SimpleNamespace(screen_all=lambda *args: [], refit_all=lambda *args, incumbent, **kw: [incumbent])
+    shop: Any = SimpleNamespace(
+        screen_all=lambda *args: [], refit_all=lambda *args, incumbent, **kw: Refitted([incumbent], {})
+    )
     both = replace(nominal, added=(STRIBECK, DELAY))
-    contest = Round.of(nominal, (), [], established=set(), bar=DETECT, accepted=None)
+    contest = Round.of(nominal, (), [], established=set(), bar=DETECT, accepted=None, failed={})
     old = [
         Place(replace(nominal, added=(o,)), trial(e, 100.0), contest) for o, e in ((DELAY, STRIBECK), (STRIBECK, DELAY))
     ]
@@ -207,15 +211,15 @@ def test_a_trial_that_is_fitted_already_contests_and_is_not_fitted_once_more(
 ) -> None:
     tried = []
 
-    def noted(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> list[Trial]:
+    def noted(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Trial:
         tried.append(candidate.effect)
-        return [trial(candidate.effect, 20.0)]
+        return trial(candidate.effect, 20.0)
 
     monkeypatch.setattr(workshop, "_tried", noted)
     chosen = [Screened(effect, 1.0, ({},), 1.0) for effect in (DELAY, STRIBECK, ASYMMETRY)]
     with ThreadPoolExecutor(1) as pool:
         shop = Workshop(pool, _core.Cancel(), progress=False, library=())
-        trials = shop.refit_all(fitter, nominal, chosen, "", least=10.0, incumbent=trial(STRIBECK, 30.0))
+        trials = shop.refit_all(fitter, nominal, chosen, "", least=10.0, incumbent=trial(STRIBECK, 30.0)).trials
     assert tried == [DELAY, ASYMMETRY]
     assert sorted(t.effect for t in trials) == sorted([STRIBECK, DELAY, ASYMMETRY])
 

@@ -14,6 +14,7 @@ from tendonlab.diagnosis.search.rivals import Place, contest_each_place, improve
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.select import select_effects
 from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.diagnosis.search.workshop import Refitted
 from tendonlab.errors import NumericalError
 
 FITTER: Any = SimpleNamespace(floor=SimpleNamespace(repeated=True), case=SimpleNamespace())
@@ -32,8 +33,8 @@ def trial(effect: str, gain: float, *others: str, left_out: float = 100.0) -> Tr
     return Trial(effect, model(*others, effect, evidence=gain), gain, left_out, 0.0)
 
 
-def screened(effect: str, gain: float, *, simulated: bool = True) -> Screened:
-    return Screened(effect, gain, ({},), 1.0, simulated)
+def screened(effect: str, gain: float, *, trouble: str = "") -> Screened:
+    return Screened(effect, gain, ({},), 1.0, trouble)
 
 
 class Shop:
@@ -48,10 +49,11 @@ class Shop:
 
     def refit_all(
         self, fitter: Any, base: Any, chosen: Any, label: str, *, least: float, incumbent: Any = None
-    ) -> list[Trial]:
+    ) -> Refitted:
         self.refitted = [s.effect for s in chosen]
         fitted = [trial(name, self.gains[name], *base.added) for name in self.refitted if name in self.gains]
-        return sorted([*fitted, *([incumbent] if incumbent else [])], key=lambda t: -t.evidence_gain)
+        failed = {name: "no fit" for name in self.refitted if name not in self.gains}
+        return Refitted(sorted([*fitted, *([incumbent] if incumbent else [])], key=lambda t: -t.evidence_gain), failed)
 
 
 @pytest.fixture
@@ -83,11 +85,11 @@ def test_a_candidate_that_fails_at_strained_values_is_tried_at_nominal_ones(
     strained: bool, worthy: Callable[..., None]
 ) -> None:
     worthy(strained=strained)
-    shop: Any = Shop([screened("x", 50.0), screened("y", 0.0), screened("z", 0.0, simulated=False)], {"x": 40.0})
+    shop: Any = Shop([screened("x", 50.0), screened("y", 0.0), screened("z", 0.0, trouble="stopped")], {"x": 40.0})
     found = next_effect(FITTER, model(), largest_gain=0.0, shop=shop)
     assert found is not None
     assert shop.refitted == (["x", "z"] if strained else ["x"])
-    assert found.failed == (("z",) if strained else ())
+    assert found.failed == {"z": "no fit" if strained else "stopped"}
 
 
 @pytest.mark.parametrize(

@@ -89,11 +89,13 @@ def _on_the_fits(search: Search) -> list[str]:
 
 
 def _on_the_failed(search: Search) -> list[str]:
-    failed = dict.fromkeys(effect for contest in search.rounds for effect in contest.failed)
+    failed = {effect: reason for contest in search.rounds for effect, reason in contest.failed.items()}
     tried = {trial.effect for contest in search.rounds for trial in contest.trials}
-    names = [effect for effect in failed if effect not in tried]
-    them = "them" if len(names) > 1 else "it"
-    return [f"No fit succeeded with {', '.join(names)}, which does not exclude {them}."] if names else []
+    return [
+        f"No fit succeeded with {effect}, which does not exclude it: {reason}."
+        for effect, reason in failed.items()
+        if effect not in tried
+    ]
 
 
 def _on_the_refuted(search: Search) -> list[str]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence, Set
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -36,7 +36,7 @@ MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this sha
 class Round:
     """The contest for one effect in addition to those of `base`: all candidates as screened, the trials best first, the
     probability of each effect (key None: no further effect), the trial that was accepted, the effects that are
-    `established`, and those of which every fit `failed`."""
+    `established`, and why every fit of the others `failed`."""
 
     base: tuple[str, ...]
     screened: tuple[Screened, ...]
@@ -44,7 +44,7 @@ class Round:
     probability: dict[str | None, float]
     accepted: Trial | None
     established: Set[str]
-    failed: tuple[str, ...] = ()
+    failed: Mapping[str, str] = field(default_factory=dict)
 
     def refuted(self) -> Round:
         """The round where none of its effects holds: each ranks behind no further effect, which takes their place."""
@@ -63,12 +63,12 @@ class Round:
         established: Set[str],
         bar: Bar,
         accepted: Trial | None,
-        failed: Sequence[str] = (),
+        failed: Mapping[str, str],
     ) -> Round:
         """The round of `trials`, best first, of which one, or none, is accepted."""
         temperature = TEMPERATURE * max([1.0, min((t.fitted.whitened_square for t in trials), default=1.0)])
         probability = probabilities(trials, established, bar, temperature)
-        return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, tuple(failed))
+        return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, failed)
 
 
 def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Workshop) -> Round | None:
@@ -85,13 +85,14 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
         chosen = _with_hidden(fitter, base, chosen, bar, shop)
-    trials = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
+    refitted = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
+    trials = refitted.trials
     established = {t.effect for t in trials if bar.passed(t)}
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
         leader, established = None, set()
-    fitted = {t.effect for t in trials}
-    failed = [s.effect for s in chosen if s.effect not in fitted]
+    failed = {s.effect: s.trouble for s in screened if not s.simulated} | dict(refitted.failed)
+    failed = {effect: reason for effect, reason in failed.items() if effect not in {t.effect for t in trials}}
     return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader, failed=failed)
 
 

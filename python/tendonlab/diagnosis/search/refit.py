@@ -18,28 +18,44 @@ SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to be finished
 BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
 STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which it compensates for something
+EXPLODED = "the derivatives of every fit are too large to tell anything"
 MOST = 700.0  # logarithm of the largest ratio of costs: far behind is behind
 
 Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
 
 
-def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Fitted | None:
-    """The best fit of `base` with the candidate over its starts, None where no fit succeeds.
+def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Fitted:
+    """The best fit of `base` with the candidate over its starts.
 
-    `pace`: evidence of a rival, all rows counted; a fit that lies far behind is not finished."""
+    `pace`: evidence of a rival, all rows counted; a fit that lies far behind is not finished. Raises NumericalError
+    where no fit succeeds, with the reason that the last one failed for."""
     best: Fitted | None = None
+    trouble: NumericalError | ParameterError = NumericalError(candidate.trouble)
+
+    def attempt(start: Mapping[str, float], *, from_nominal: bool = False) -> None:
+        nonlocal best, trouble
+        try:
+            fit = _fit(fitter, base, {candidate.effect: start}, best, pace=pace, from_nominal=from_nominal)
+            best = more_evident(best, fit)
+        except (NumericalError, ParameterError) as failed:
+            trouble = failed
+
     for values in candidate.starts if candidate.simulated else ():
-        best = more_evident(best, _fit(fitter, base, {candidate.effect: values}, best, pace=pace))
+        attempt(values)
     hidden = strained(fitter, base) and not candidate.far_behind
     if best is None or (hidden and best.mean_square > NEAR_FLOOR):
-        fit = _fit(fitter, base, {candidate.effect: candidate.starts[0]}, best, pace=pace, from_nominal=True)
-        best = more_evident(best, fit)
+        attempt(candidate.starts[0], from_nominal=True)
+    if best is None:
+        raise NumericalError(str(trouble))
     return best
 
 
-def more_evident(best: Fitted | None, fit: Fitted | None) -> Fitted | None:
-    """Whichever of two fits has more evidence. A fit whose derivatives exploded has none that counts."""
-    if fit is None or not math.isfinite(fit.evidence):
+def more_evident(best: Fitted | None, fit: Fitted) -> Fitted:
+    """Whichever of two fits has more evidence. A fit whose derivatives exploded has none that counts: without another
+    one it raises NumericalError."""
+    if not math.isfinite(fit.evidence):
+        if best is None:
+            raise NumericalError(EXPLODED)
         return best
     return fit if best is None or fit.counted().evidence > best.counted().evidence else best
 
@@ -53,7 +69,7 @@ def restarted(fitter: Fitter, base: Fitted, leader: Fitted, fit: Fitted) -> Fitt
         again = fitter.settled(fitter.fit(system, added=fit.added, initial=leader.initial))
     except (NumericalError, ParameterError):
         return fit
-    return more_evident(fit, again) or fit
+    return more_evident(fit, again)
 
 
 def _fit(
@@ -64,24 +80,22 @@ def _fit(
     *,
     pace: float,
     from_nominal: bool = False,
-) -> Fitted | None:
-    """`base` refitted with `effect`, None where that fails; only a sketch where it lies far behind the rival or `best`.
+) -> Fitted:
+    """`base` refitted with `effect`; only a sketch where it lies far behind the rival or `best`.
 
-    `from_nominal`: start at the nominal values of the simulator instead of the tuned ones."""
+    `from_nominal`: start at the nominal values of the simulator instead of the tuned ones. Raises NumericalError or
+    ParameterError where that fails."""
     added = (*base.added, *effect)
     goal = _goal(fitter, base, best, pace)
-    try:
-        system, initial = extended(base.system, effect), base.initial
-        if from_nominal:
-            system, initial = _cooled(fitter, base, system, added)
-        fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH, goal=goal)
-        if fit.cost > goal:
-            return fitter.releveled(fit)
-        if not fit.converged:
-            fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=40)
-        return fitter.settled(fit)
-    except (NumericalError, ParameterError):
-        return None
+    system, initial = extended(base.system, effect), base.initial
+    if from_nominal:
+        system, initial = _cooled(fitter, base, system, added)
+    fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH, goal=goal)
+    if fit.cost > goal:
+        return fitter.releveled(fit)
+    if not fit.converged:
+        fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=40)
+    return fitter.settled(fit)
 
 
 def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float) -> float:

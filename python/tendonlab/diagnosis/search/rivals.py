@@ -97,14 +97,16 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     label = f"instead of {effect}"
     screened = [] if others.exploded else shop.screen_all(fitter, others, label)  # nothing follows from such slopes
     promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
-    trials = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
+    refitted = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
+    trials = refitted.trials
 
     def establishes(t: Trial) -> bool:
         ahead = _clearly_better(t, holder)
         return DETECT.passed(t) and (not ahead or predicts_better(fitter, base, t.fitted))
 
     established = {t.effect for t in trials if establishes(t)}
-    round_ = Round.of(others, screened, trials, established=established, bar=DETECT, accepted=holder)
+    known, failed = established, refitted.failed
+    round_ = Round.of(others, screened, trials, established=known, bar=DETECT, accepted=holder, failed=failed)
     return Place(others, holder, round_)
 
 

@@ -27,15 +27,20 @@ INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to
 @dataclass(frozen=True)
 class Screened:
     """A candidate as the screen saw it: expected gain in nats, starting values for its fits, best first, and the gain
-    that an effect of typical size would bring (its visibility). `simulated`: whether the model ran with it at all;
-    `far_behind`: whether others promise far more, at tuned values and at believed ones."""
+    that an effect of typical size would bring (its visibility). `trouble`: why the model never ran with it, empty where
+    it did; `far_behind`: whether others promise far more, at tuned values and at believed ones."""
 
     effect: str
     gain: float
     starts: tuple[dict[str, float], ...]
     visibility: float
-    simulated: bool = True
+    trouble: str = ""
     far_behind: bool = False
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the model ran with it at all."""
+        return not self.trouble
 
 
 @dataclass(frozen=True)
@@ -88,17 +93,18 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     start = start_of(base.system, effect, case.scales)
     shapes = [p.name for p in rows if p.purpose == "shape"]
     scores: list[_Score] = []
+    trouble = ""
     for factor in SHAPES if shapes else (1.0,):
         shaped = {**start, **{name: start[name] * factor for name in shapes[:1]}}
         for p in (p for p in rows if p.amplitude):
             for amplitude in AMPLITUDES:
                 try:
                     scores.append(_score(fitter, base, effect, p, shaped, amplitude))
-                except NumericalError:
-                    continue
+                except NumericalError as failed:
+                    trouble = str(failed)
     if not scores:
         typical = {p.name: AMPLITUDES[-1] * _unit(case, p) for p in rows if p.amplitude}
-        return Screened(effect, 0.0, ({**start, **typical},), 0.0, simulated=False)
+        return Screened(effect, 0.0, ({**start, **typical},), 0.0, trouble)
     scores.sort(key=lambda s: -s.gain)
     return Screened(effect, scores[0].gain, _starts(scores, shapes[:1]), max(s.visibility for s in scores))
 

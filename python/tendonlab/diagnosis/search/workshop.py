@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,12 +13,29 @@ from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
 from tendonlab.diagnosis.search.trial import Trial, counted_alike
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
 
 CLOSE = 0.1  # share of the best gain behind which a trial may only have ended in a worse optimum
 SAME = 0.1  # nats that are no difference
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A candidate with which no fit succeeded, and why."""
+
+    effect: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Refitted:
+    """Candidates after their refits: `trials`, best first, and why every fit of the others `failed`."""
+
+    trials: list[Trial]
+    failed: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -48,17 +65,20 @@ class Workshop:
         *,
         least: float,
         incumbent: Trial | None = None,
-    ) -> list[Trial]:
-        """The chosen candidates refitted, best first. The first sets the pace for the others, unless there is an
+    ) -> Refitted:
+        """The chosen candidates refitted. The first sets the pace for the others, unless there is an
         `incumbent`: a trial that is fitted already. Those that stay far below a gain of `least` nats are sketched."""
         pace = base.counted().evidence + least
-        first = [incumbent] if incumbent else _tried(fitter, base, chosen[0], pace=pace) if chosen else []
-        pace = max([pace, *(t.fitted.counted().evidence for t in first)])
+        first = incumbent or (_tried(fitter, base, chosen[0], pace=pace) if chosen else None)
+        if isinstance(first, Trial):
+            pace = max(pace, first.fitted.counted().evidence)
         rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
         shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
-        trials = [*first, *(trial for tried in shown for trial in tried)]
-        return self._levelled(fitter, base, counted_alike(trials, base))
+        tried = [*([first] if first else []), *shown]
+        trials = counted_alike([t for t in tried if isinstance(t, Trial)], base)
+        failed = {t.effect: t.reason for t in tried if isinstance(t, Failed)}
+        return Refitted(self._levelled(fitter, base, trials), failed)
 
     def _levelled(self, fitter: Fitter, base: Fitted, trials: list[Trial]) -> list[Trial]:
         """The trials, those close behind the first also from where it ended, and the first from where they did."""
@@ -79,9 +99,12 @@ class Workshop:
         return trials
 
 
-def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> list[Trial]:
-    fit = refit(fitter, base, with_whole_shares(fitter, base, candidate), pace=pace)
-    return [Trial.of(candidate.effect, fit, base)] if fit else []
+def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Trial | Failed:
+    try:
+        fit = refit(fitter, base, with_whole_shares(fitter, base, candidate), pace=pace)
+    except NumericalError as reason:
+        return Failed(candidate.effect, str(reason))
+    return Trial.of(candidate.effect, fit, base)
 
 
 @contextmanager
