@@ -81,6 +81,18 @@ def test_presliding_through_reversals():
     check(system, by, 2.0 * np.sin(2 * np.pi * t), time=t, step=2e-5, least=1)
 
 
+def test_stiff_bristle_that_slides_under_a_held_command():
+    """Between two samples the bristle settles many times over: explicit steps of that length damp nothing, which the
+    values, in balance, do not show."""
+    effects = ("joint:coulomb", "joint:viscous", "joint:presliding")
+    system = joint(effects, coulomb=1.0, viscous=0.4, joint_bristle_stiffness=2e3, joint_bristle_damping=1.0,
+                   joint_presliding_share=1.0)  # fmt: skip
+    command = 1.8 + 0.01 * np.sin(2 * np.pi * T)
+    by = ["inertia", "coulomb", "viscous"]
+    check(system, by, command, kind="hold", velocity=[2.0], tolerance=1e-4, bound=1e-4, least=0)
+    assert run(system, T, command, kind="hold", velocity=[2.0], tolerance=1e-4).attempts < 1.1 * len(T)
+
+
 def test_partial_bristle_beside_dry_friction():
     """Half of the dry friction stays dry: it sticks, with a loaded bristle beside it."""
     t = np.linspace(0.0, 1.5, 401)

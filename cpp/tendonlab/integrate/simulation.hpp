@@ -5,6 +5,7 @@
 #include "tendonlab/integrate/contact.hpp"
 #include "tendonlab/integrate/drive.hpp"
 #include "tendonlab/integrate/saltation.hpp"
+#include "tendonlab/integrate/stiffness.hpp"
 
 namespace tendonlab::integrate {
 template <template <class> class Of, class T, class Tableau = Rodas5P>
@@ -81,7 +82,7 @@ class Simulation {
   }
   bool done() const { return !(t < end); }
   /// What to try next.
-  Attempt plan(Trajectory& trajectory) const {
+  Attempt plan(Trajectory& trajectory) {
     if (++trajectory.attempts > settings.max_attempts)
       throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,
                                     " step attempts; expected to reach t = ", end,
@@ -95,7 +96,7 @@ class Simulation {
       next.length = reach;
     else if (pausing > 0 && !retakes)
       pause_at_knot(next);
-    next.explicitly = next.length < h && next.length <= explicit_reach;
+    next.explicitly = next.length < h && next.length <= explicit_reach && next.length <= stable_reach();
     return next;
   }
   /// Accepts the step or not, and passes the event or the jump of the inputs that it ends on.
@@ -150,6 +151,8 @@ class Simulation {
   };
   static constexpr double on_guard = 1e-13, past_guard = 1e-14;
   static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
+  static constexpr double stable = 2.5;  ///< rate times length up to which an explicit step damps (2.8 at most)
+  static constexpr int STABLE_FOR = 64;  ///< explicit steps without events until a system without memory is looked at
   /// Steps that end on knots after one that passed a knot has failed: twice as many each time, until one succeeds.
   static constexpr int FEWEST_PAUSES = 16, MOST_PAUSES = 1024;
 
@@ -177,6 +180,14 @@ class Simulation {
       shrink(first.stale ? 0.25 * length : first.share * 1.01 * length);
   }
 
+  /// The longest explicit step that damps what the system damps. The error of a state in balance does not show that a
+  /// step is too long, but derivatives grow with each such step, and rounding does.
+  double stable_reach() {
+    if (remembers || --still_stable < 0)
+      longest_stable = stable / fastest_rate(linearise(plain_system, values(y), plain_frame, drive)),
+      still_stable = STABLE_FOR;
+    return longest_stable;
+  }
   template <int degree>
   static double root_of(double x) {
     if constexpr (degree % 2 == 0 && degree > 2)
@@ -274,6 +285,7 @@ class Simulation {
   }
   void turn(const Crossing& at) {
     const int m = at.mode;
+    still_stable = 0;
     std::array<bool, num_modes> turning{};
     if (m == saturation) {
       drive.side = drive.side == 0.0 ? std::copysign(1.0, unlimited()) : 0.0;
@@ -372,8 +384,10 @@ class Simulation {
   Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
   double explicit_reach = Signal::inf_time;  ///< longest step that an explicit method takes as exactly
-  int pausing = 0;                           ///< steps that still end on knots,
-  int patience = FEWEST_PAUSES;              ///< and how many shall after the next failure
+  double longest_stable = 0;
+  int still_stable = 0;          ///< explicit steps for which that holds
+  int pausing = 0;               ///< steps that still end on knots,
+  int patience = FEWEST_PAUSES;  ///< and how many shall after the next failure
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?
   double memory_level[slots<System>] = {};

@@ -123,7 +123,7 @@ TENDONLAB_INLINE StateOf<System, T> change(const System& system, const StateOf<S
   return k;
 }
 
-/// An explicit step: less work than a Rosenbrock step, for steps so short that nothing is stiff.
+/// An explicit step: less work than a Rosenbrock step, for steps so short that nothing is stiff (`fastest_rate`).
 template <class Tableau, class System, class T, class Inputs>
 [[gnu::flatten]] Step<StateOf<System, T>> advance_explicitly(const System& system, const StateOf<System, T>& y,
                                                              const Frame<System, T>& frame, const Inputs& in,

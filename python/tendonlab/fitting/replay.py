@@ -21,8 +21,9 @@ RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of 
 
 
 def choose_replay(dataset: Dataset, system: System) -> Replay:
-    """Free run with the known controller, unless the logged command contradicts the controller; else injection, the
-    same for every model; else, without a measured motor, the logged command alone.
+    """Free run with the known controller, and the noise that the sensor fed back into its command, unless the logged
+    command contradicts the controller; else injection, the same for every model; else, without a measured motor, the
+    logged command alone.
 
     The injection is so stiff that an effort of 10 % of the command's, which no model explains, moves the simulated
     sensor by ten times its noise: stiffer, and the effects drown in that noise; softer, and what no model explains
@@ -30,7 +31,7 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
     damper must outweigh friction that falls with speed: else the simulator sticks and slips where the rig slides."""
     controller = dataset.controller
     if controller is not None and missed_command(dataset, system) <= CONTRADICTED:
-        return Replay("controller", controller.kp, controller.kd, controller.measured)
+        return Replay("controller", controller.kp, controller.kd, controller.measured, feeds_noise=True)
     first = next((s.name for s in system.info.outputs if s.axis == 0), None)
     command = system.info.inputs[0].name if system.info.commanded else None  # another input may stand in for it
     if first is None or first not in dataset.outputs or command not in dataset.inputs:

@@ -1,11 +1,18 @@
-"""What a controller commands, from its reference and what it reads."""
+"""What a controller commands, from its reference and what it reads, and what noise of its sensor adds."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from tendonlab.arguments import JITTER
 from tendonlab.simulation.records import Controller, Experiment
+from tendonlab.simulation.signals import is_noiseless
+from tendonlab.simulation.smoothing import smoothing_spline
+
+FEWEST = 10  # samples of which noise can be told
+OFF_CLOCK = 0.25  # of the period: samples that are further off the ticks do not show what the controller read
 
 
 def command_of(controller: Controller, experiment: Experiment, measured: np.ndarray) -> np.ndarray:
@@ -30,6 +37,30 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
         command = proportional * (reference(time) - measured) + controller.kd * slope
     command = np.clip(command, -controller.limit, controller.limit)
     return np.asarray(command + _disturbance(controller, experiment, now if step > 0 else time))
+
+
+def fed_noise(controller: Controller, experiment: Experiment, command: str) -> tuple[np.ndarray, np.ndarray] | None:
+    """Ticks of the clock of `controller`, and what was added to its command there: the logged `command` less that of
+    the smoothed reading, 0 where a sample is missing. So noise that the sensor feeds back shakes a simulated rig as it
+    shook the real one, which eases friction. None where there is no noise or the log does not tell: without a clock,
+    without one of the signals, or with other instants than the ticks."""
+    step, time = controller.sample_time, experiment.time
+    names = [command, controller.measured, controller.reference, *({controller.disturbance} - {None})]
+    if not step > 0 or len(time) < FEWEST or not set(names) <= set(experiment.data.columns):
+        return None
+    tick = np.rint((time - time[0]) / step).astype(int)
+    if np.any(np.diff(tick) != 1) or np.max(np.abs(time - time[0] - step * tick)) > OFF_CLOCK * step:
+        return None
+    logged = experiment.data[names].to_numpy(dtype=float)
+    there = np.isfinite(logged).all(axis=1)
+    reading = logged[there, 1]
+    if there.sum() < FEWEST or is_noiseless(reading):
+        return None
+    filled = replace(experiment, data=experiment.data.interpolate(method="index", limit_direction="both"))
+    smooth = smoothing_spline(time[there], reading)(time)
+    known = _disturbance(controller, filled, time)
+    added = np.where(there, logged[:, 0] - command_of(controller, filled, smooth), 0.0)
+    return time[0] + step * tick, known + added
 
 
 def _disturbance(controller: Controller, experiment: Experiment, at: np.ndarray) -> np.ndarray:

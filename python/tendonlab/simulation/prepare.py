@@ -12,6 +12,7 @@ from tendonlab import _core
 from tendonlab.arguments import within
 from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.simulation.catalog import SystemInfo
+from tendonlab.simulation.command import fed_noise
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.signals import averaged, hold, linear, scales_of, smooth, smoothed
 from tendonlab.simulation.start import Start, start_of
@@ -42,7 +43,8 @@ class Simulator(Protocol):
 class Replay:
     """How experiments are replayed, the same for every model compared.
 
-    "controller": rig and known controller in free run. "injection": the logged command, and a spring `kp` and damper
+    "controller": rig and known controller in free run; `feeds_noise`: what the noise of the logged reading added to the
+    command is added again, because it shakes the rig. "injection": the logged command, and a spring `kp` and damper
     `kd` (command per displacement, per speed) that pull the simulated motor to the logged one. "free": the logged
     command alone."""
 
@@ -50,6 +52,12 @@ class Replay:
     kp: float | None = None
     kd: float | None = None
     output: str | None = None
+    feeds_noise: bool = False
+
+    @property
+    def carries_noise(self) -> bool:
+        """Whether noise of a sensor reaches the simulated rig."""
+        return self.kind == "injection" or self.feeds_noise
 
     def to_dict(self) -> dict[str, Any]:
         """As report.json has it."""
@@ -227,10 +235,24 @@ def _loop(experiment: Experiment, system: Simulator, replay: Replay, measured: n
     controller = system.controller
     if controller is None:
         raise ParameterError("replay = 'controller': the system has no controller")
-    return _controller_loop(experiment, system, controller)
+    disturbance = _disturbance(experiment, controller)
+    if replay.feeds_noise:
+        fed = fed_noise(controller, experiment, system.info.inputs[0].name)
+        disturbance = hold(*fed) if fed else disturbance
+    return _controller_loop(experiment, system, controller, disturbance)
 
 
-def _controller_loop(experiment: Experiment, system: Simulator, controller: Controller) -> _core.Loop:
+def _disturbance(experiment: Experiment, controller: Controller) -> _core.Signal:
+    """What is added to the controller's command, as it was stated."""
+    if controller.disturbance is None:
+        return _core.Signal()
+    time, values = experiment.time, _finite(experiment, controller.disturbance)
+    return hold(time, values) if experiment.holds.get(controller.disturbance, True) else linear(time, values)
+
+
+def _controller_loop(
+    experiment: Experiment, system: Simulator, controller: Controller, disturbance: _core.Signal
+) -> _core.Loop:
     time, held = experiment.time, experiment.holds
     c = [s.name for s in system.info.outputs].index(controller.measured)
     cascade = controller.kind == "cascade"
@@ -238,10 +260,6 @@ def _controller_loop(experiment: Experiment, system: Simulator, controller: Cont
     differentiated = not cascade and controller.derivative_on == "error" and controller.sample_time == 0.0
     # A reference that is differentiated needs a slope without jumps; else it goes between samples as the contract says.
     make = hold if held.get(controller.reference, False) else smooth if differentiated else linear
-    disturbance = _core.Signal()
-    if controller.disturbance is not None:
-        values = _finite(experiment, controller.disturbance)
-        disturbance = hold(time, values) if held.get(controller.disturbance, True) else linear(time, values)
     return _core.Loop(
         kind="controller",
         axis=system.info.outputs[c].axis or 0,

@@ -43,7 +43,7 @@ def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     from tendonlab.simulation.smoothing import smoothing_spline  # loads scipy
 
     kept = np.isfinite(values)
-    if white_noise_sd(values) <= ROUNDING * float(np.ptp(values[kept])):
+    if is_noiseless(values):
         return smooth(time[kept], values[kept])
     return _from_pieces(smoothing_spline(time[kept], values[kept]))
 
@@ -78,6 +78,11 @@ def scales_of(time: np.ndarray, positions: np.ndarray) -> tuple[float, float]:
     if not travel:
         return 1e-2, 1e-2
     return 0.1 * min(travel), max(0.1 * min(speed), 1e-12)
+
+
+def is_noiseless(values: np.ndarray) -> bool:
+    """Whether a signal was computed, not measured."""
+    return white_noise_sd(values) <= ROUNDING * float(np.ptp(values[np.isfinite(values)]))
 
 
 def white_noise_sd(values: np.ndarray) -> float:

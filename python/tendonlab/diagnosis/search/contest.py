@@ -13,14 +13,13 @@ from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect, explains_enough, is_no_shape
-from tendonlab.diagnosis.search.workshop import Workshop
+from tendonlab.diagnosis.search.workshop import FAR_BEHIND, Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
-FAR_BEHIND = 0.1  # share of the most that another candidate promises
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
@@ -85,6 +84,8 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
         chosen = _with_hidden(fitter, base, chosen, bar, shop)
+    else:
+        chosen = _behind(chosen, chosen)
     refitted = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
     trials = refitted.trials
     established = {t.effect for t in trials if bar.passed(t)}
@@ -114,8 +115,7 @@ def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar,
 
 
 def _behind(chosen: Sequence[Screened], believed: Sequence[Screened]) -> list[Screened]:
-    """The `chosen` candidates, marked where others promise far more, both here and at believed values: these need no
-    start from there."""
+    """The `chosen` candidates, marked where others promise far more, both here and at believed values."""
     gain = {s.effect: s.gain if s.simulated else math.inf for s in believed}
     here, there = (FAR_BEHIND * max((s.gain for s in of), default=0.0) for of in (chosen, believed))
     return [replace(s, far_behind=s.gain < here and gain.get(s.effect, math.inf) < there) for s in chosen]
@@ -131,10 +131,10 @@ def _least_gain(fitter: Fitter, base: Fitted, bar: Bar) -> float:
 
 def _evidence_counts(fitter: Fitter, base: Fitted) -> bool:
     """Whether evidence may tell of an effect that removes next to nothing near the floor: experiments enough, and noise
-    that is known well. An injection carries the noise of a sensor through one body to the next, where a delay or
+    that is known well. A replay may carry the noise of a sensor through one body to the next, where a delay or
     presliding imitates it, by up to 291 nats on rigs that lacked nothing."""
     bodies = len(fitter.case.prepared[0].core.position)
-    return len(base.runs) >= ENOUGH and (bodies == 1 or fitter.case.replay.kind != "injection")
+    return len(base.runs) >= ENOUGH and (bodies == 1 or not fitter.case.replay.carries_noise)
 
 
 def _worth_adding(

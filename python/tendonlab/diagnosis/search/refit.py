@@ -40,7 +40,8 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
         except (NumericalError, ParameterError) as failed:
             trouble = failed
 
-    for values in candidate.starts if candidate.simulated else ():
+    starts = candidate.starts[:1] if candidate.far_behind else candidate.starts
+    for values in starts if candidate.simulated else ():
         attempt(values)
     hidden = strained(fitter, base) and not candidate.far_behind
     if best is None or (hidden and best.mean_square > NEAR_FLOOR):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from tendonlab import _core
@@ -18,6 +18,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
 
+FAR_BEHIND = 0.1  # share of the most that another candidate promises, and of what the first one gains
 CLOSE = 0.1  # share of the best gain behind which a trial may only have ended in a worse optimum
 SAME = 0.1  # nats that are no difference
 
@@ -73,6 +74,8 @@ class Workshop:
         if isinstance(first, Trial):
             pace = max(pace, first.fitted.counted().evidence)
         rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
+        far = FAR_BEHIND * (pace - base.counted().evidence)
+        rest = [replace(s, far_behind=s.far_behind and s.gain < far) for s in rest]
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
         shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
         tried = [*([first] if first else []), *shown]
@@ -101,7 +104,8 @@ class Workshop:
 
 def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Trial | Failed:
     try:
-        fit = refit(fitter, base, with_whole_shares(fitter, base, candidate), pace=pace)
+        started = candidate if candidate.far_behind else with_whole_shares(fitter, base, candidate)
+        fit = refit(fitter, base, started, pace=pace)
     except NumericalError as reason:
         return Failed(candidate.effect, str(reason))
     return Trial.of(candidate.effect, fit, base)
