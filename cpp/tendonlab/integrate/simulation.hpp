@@ -150,9 +150,10 @@ class Simulation {
     bool past = false;   ///< it began beyond its guard, by more than rounding
   };
   static constexpr double on_guard = 1e-13, past_guard = 1e-14;
-  static constexpr double RETRY = 1.03;  ///< growth of the reach of explicit steps while none is taken
-  static constexpr double stable = 2.5;  ///< rate times length up to which an explicit step damps (2.8 at most)
-  static constexpr int STABLE_FOR = 64;  ///< explicit steps without events until a system without memory is looked at
+  static constexpr double RETRY = 1.03;         ///< growth of the reach of explicit steps while none is taken
+  static constexpr double stable = 2.5;         ///< rate times length up to which an explicit step damps (2.8 at most)
+  static constexpr int STABLE_FOR = 64;         ///< explicit steps without events until stability is looked at again,
+  static constexpr int STABLE_WITH_MEMORY = 3;  ///< with a memory, which settles faster the faster it slides
   /// Steps that end on knots after one that passed a knot has failed: twice as many each time, until one succeeds.
   static constexpr int FEWEST_PAUSES = 16, MOST_PAUSES = 1024;
 
@@ -183,9 +184,10 @@ class Simulation {
   /// The longest explicit step that damps what the system damps. The error of a state in balance does not show that a
   /// step is too long, but derivatives grow with each such step, and rounding does.
   double stable_reach() {
-    if (remembers || --still_stable < 0)
-      longest_stable = stable / fastest_rate(linearise(plain_system, values(y), plain_frame, drive)),
-      still_stable = STABLE_FOR;
+    if (--still_stable < 0) {
+      longest_stable = stable / fastest_rate(linearise(plain_system, values(y), plain_frame, drive));
+      still_stable = remembers ? STABLE_WITH_MEMORY : STABLE_FOR;
+    }
     return longest_stable;
   }
   template <int degree>
