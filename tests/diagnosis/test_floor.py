@@ -58,3 +58,14 @@ def test_no_floor_is_below_the_rounding_of_coarse_readings(twin_case: Any, diffe
     assert floor.repeated
     assert floor.rms[c] == pytest.approx(max(differs, 1.0) * rounding, rel=0.03)
     assert floor.sd[c] == pytest.approx(max(differs, 1.0) * rounding, rel=0.03)
+
+
+def test_friction_that_moves_next_to_nothing_differs_by_no_large_factor(twin_case: Any) -> None:
+    """Friction that a rough fit put near zero could explain any noise by a huge factor."""
+    draw = np.random.default_rng(1)
+    seen = []
+    for ready in twin_case.prepared:
+        residual = twin_case.noise[:, None] * draw.standard_normal(ready.measured.shape)
+        direction = 1e-9 * twin_case.noise[:, None] * draw.standard_normal((1, *ready.measured.shape))
+        seen.append(Sensitivities(residual, direction, direction[:0]))
+    assert estimate(twin_case, seen, twin_case.train).tau < 0.01

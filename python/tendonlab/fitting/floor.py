@@ -22,6 +22,7 @@ from tendonlab.simulation.system import System
 AR_ORDER = 6
 NOTHING = 1e-6  # of rounding: readings that differ by less, but for a constant, repeat exactly
 LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatever was stated
+LARGEST = 0.5  # plausible factor by which friction differs from run to run
 RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
 
@@ -151,14 +152,18 @@ def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> 
 
 
 def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.ndarray, np.ndarray]:
-    """A difference without what friction from run to run and the initial state explain, and friction's coefficients."""
+    """A difference without what friction from run to run and the initial state explain, and friction's coefficients.
+    These are believed to lie below `LARGEST`: friction that moves nothing explains nothing, by however large a factor.
+    """
     kept = case.measured
     weight = case.noise[kept][:, None]
     y = (difference[kept] / weight).ravel()
     basis = np.concatenate([s.friction[:, kept], s.initial[:, kept]]) / weight
     columns = basis.reshape(len(basis), y.size).T
     there = np.isfinite(y)
-    found = np.linalg.lstsq(columns[there], y[there], rcond=None)[0] if columns.shape[1] else np.zeros(0)
+    believed = np.eye(len(basis))[: len(s.friction)] / LARGEST
+    rows, right = np.vstack([columns[there], believed]), np.concatenate([y[there], np.zeros(len(believed))])
+    found = np.linalg.lstsq(rows, right, rcond=None)[0] if columns.shape[1] else np.zeros(0)
     cleaned = difference.copy()
     cleaned[kept] -= np.tensordot(found, np.concatenate([s.friction, s.initial])[:, kept], axes=1)
     return cleaned, found[: len(s.friction)]
