@@ -96,6 +96,15 @@ def test_the_shipped_map_is_read() -> None:
         assert of.holds("rigid_joint", runs=of.least_runs) == ("rigid_joint" in of.systems)
 
 
+def test_without_cases_to_fit_the_shipped_map_stays_and_is_confirmed_by_none() -> None:
+    content = calibrate()
+    for name, repeats in (("with repeats", True), ("without repeats", False)):
+        of = shipped(repeats=repeats)
+        assert content[name]["map"]["verdicts"] == {"temperature": of.verdicts.temperature, "lapse": of.verdicts.lapse}
+        assert content[name]["fitted on"]
+        assert content[name]["confirmed"] == []
+
+
 def test_true_probabilities_pass_and_false_ones_do_not() -> None:
     draw = np.random.default_rng(1)
     probability = draw.uniform(0.5, 1.0, 800)

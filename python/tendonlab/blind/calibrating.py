@@ -1,4 +1,4 @@
-"""Fit the map from evidence to probability on scored cases, and test it on others."""
+"""Fit the map from evidence to probability on scored cases, or keep the shipped one, and test it on others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.special import expit
 
-from tendonlab.diagnosis.answer.calibration import FORMAT, LEAST, Calibration, Tempering
+from tendonlab.diagnosis.answer.calibration import (
+    FORMAT,
+    LEAST,
+    Calibration,
+    Tempering,
+    shipped,
+    shipped_content,
+)
 from tendonlab.version import version
 
 from .reliability import Array, error_beyond_chance, reliability_line, too_far_off
@@ -136,23 +143,24 @@ def results_on(cases: Sequence[Judged], of: Calibration) -> dict[str, dict[str, 
     return {"verdicts": _truth_of(verdicts), "effects": _truth_of(_tempered(events, of.effects))}
 
 
-def calibrate(on: Folders, test: Folders = ()) -> dict[str, Any]:
+def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:
     """The content of calibration.json: with and without repeats the map, from how many cases of which rigs, what test
-    cases say of the map, and the kinds of rigs on which these confirm the map. Raises ValueError as `judged` does."""
+    cases say of the map, and the kinds of rigs on which these confirm the map. Where no case is given to fit `on`, the
+    shipped map stays and is tested. Raises ValueError as `judged` does."""
     cases, tests = judged(on), judged(test)
     content: dict[str, Any] = {"format": FORMAT, "tendonlab": version()}
     for name, repeats in (("with repeats", True), ("without repeats", False)):
         mine, others = ([case for case in given if case.repeats == repeats] for given in (cases, tests))
-        content[name] = _one_map(mine, others)
+        numbers = {kind: len(of) for kind, of in _by_system(mine).items()} or shipped_content()[name]["fitted on"]
+        content[name] = _one_map(fitted(mine) if mine else shipped(repeats=repeats), numbers, others)
     return content
 
 
-def _one_map(cases: Sequence[Judged], tests: Sequence[Judged]) -> dict[str, Any]:
-    found = fitted(cases) if cases else Calibration()
+def _one_map(found: Calibration, numbers: Mapping[str, int], tests: Sequence[Judged]) -> dict[str, Any]:
     results = {kind: results_on(of, found) for kind, of in _by_system(tests).items()}
     return {
         "map": {"verdicts": asdict(found.verdicts), "effects": asdict(found.effects)},
-        "fitted on": {kind: len(of) for kind, of in _by_system(cases).items()},
+        "fitted on": dict(numbers),
         "tested on": results,
         "least runs": min((case.runs for case in tests), default=0),
         "confirmed": [kind for kind, of in results.items() if _confirms(of)],

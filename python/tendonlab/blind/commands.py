@@ -67,10 +67,11 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_calibrate(verbs: Any) -> None:
-    text = "fit the map from evidence to probability on diagnosed cases whose truth is open"
+    text = "fit the map from evidence to probability on diagnosed cases whose truth is open, or test the shipped one"
     parser = _verb(verbs, "calibrate", _calibrate, text)
     pair: dict[str, Any] = {"type": Path, "nargs": 2, "action": "append", "metavar": ("SEALED", "REPORTS")}
-    parser.add_argument("--on", required=True, help="cases to fit; may be given several times", **pair)
+    text = "cases to fit; may be given several times (default: none, the shipped map stays)"
+    parser.add_argument("--on", default=[], help=text, **pair)
     parser.add_argument("--test", default=[], help="other cases, which confirm the map or not", **pair)
     parser.add_argument("--out", type=Path, required=True, help="file to write, calibration.json")
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 from tendonlab.diagnosis.answer.verdict import Verdict
 
@@ -77,10 +78,14 @@ class Calibration:
         return {name: factor * p for name, p in raw.items()}
 
 
+def shipped_content() -> dict[str, Any]:
+    """All that calibration.json of this version says."""
+    return dict(json.loads((files("tendonlab.diagnosis.answer") / FILE).read_text(encoding="utf-8")))
+
+
 @cache
 def shipped(*, repeats: bool) -> Calibration:
     """The map that comes with this version."""
-    text = (files("tendonlab.diagnosis.answer") / FILE).read_text(encoding="utf-8")
-    given = json.loads(text)["with repeats" if repeats else "without repeats"]
+    given = shipped_content()["with repeats" if repeats else "without repeats"]
     maps = {name: Tempering(**given["map"][name]) for name in ("verdicts", "effects")}
     return Calibration(**maps, systems=tuple(given["confirmed"]), least_runs=given["least runs"])
