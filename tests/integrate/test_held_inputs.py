@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from integrate.rig import FRICTION, NOMINAL, joint, pair, relative, run
+from integrate.rig import FRICTION, NOMINAL, controller, joint, pair, relative, run
+from tendonlab.simulation.signals import smooth
 
 T = np.linspace(0.0, 2.0, 2001)
 COMMAND = 0.06 * np.sin(2 * np.pi * T) + 0.03 * np.sin(2 * np.pi * 2.3 * T + 1.0)
@@ -49,3 +50,15 @@ def test_a_stiff_memory_costs_few_rejected_steps():
     system, command = CASES["stiff bristle"]
     found = run(system, T, command, kind="hold", tolerance=1e-6)
     assert found.rejected < 0.1 * found.attempts
+
+
+def test_a_late_sensor_of_an_injection_costs_one_more_step_per_sample():
+    """The knots of the log that the injection reads ahead in lie between the samples of the command."""
+    draw = np.random.default_rng(0)
+    command = COMMAND + 0.05 * draw.standard_normal(len(T))
+    system = pair((*NOMINAL, "sensor.motor_angle:delay"), **{**FRICTION, "motor_coulomb": 0.0, "joint_coulomb": 0.0},
+                  sensor__motor_angle_delay=3.3e-4)  # fmt: skip
+    logged = smooth(T, 2.0 * np.sin(2 * np.pi * 0.8 * T) + 3e-4 * draw.standard_normal(len(T)))
+    loop = controller(logged, kind="injection", proportional=0.5, derivative=0.02)
+    found = run(system, T, command, kind="hold", loop=loop, tolerance=1e-4, velocity=[10.0, 1.0])
+    assert found.attempts < 2.2 * len(T)

@@ -46,7 +46,9 @@ class Drive : public Readings<T> {
     if (logged()) look(from.inputs[0], piece[0], shift);
     for (std::size_t k = 1; k < from.inputs.size(); ++k) look(from.inputs[k], piece[k], 0.0);
     look(from.loop.disturbance, disturbance_piece, shift);
-    if (from.loop.kind != Loop::Kind::open) look(from.loop.reference, reference_piece, shift);
+    // An injection reads ahead in the log of a late sensor.
+    const double by = from.loop.kind == Loop::Kind::injection ? -plain(sensor_late) : shift;
+    if (from.loop.kind != Loop::Kind::open) look(from.loop.reference, reference_piece, by);
     return next;
   }
   /// Does the slope of an input jump at knots? Derivatives by a delay jump there too, which no step length shows.

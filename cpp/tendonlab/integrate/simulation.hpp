@@ -92,10 +92,8 @@ class Simulation {
     // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
     if (plain_frame.holds) next.length = std::min(next.length, drive.next_knot(t + resolved()) - t);
     next.lands = next.length > (retakes ? reach : 0.95 * reach);
-    if (next.lands)
-      next.length = reach;
-    else if (pausing > 0 && !retakes)
-      pause_at_knot(next);
+    if (next.lands) next.length = reach;
+    if (pausing > 0 && !retakes) pause_at_knot(next);
     next.explicitly = next.length < h && next.length <= explicit_reach && next.length <= stable_reach();
     return next;
   }
@@ -163,8 +161,8 @@ class Simulation {
   /// Within a piece of a smooth input a step is far more exact than one that passes a knot.
   void pause_at_knot(Attempt& next) const {
     const double knot = drive.next_knot(t + resolved());
-    if (!(next.length > 0.95 * (knot - t))) return;
-    next.pauses = true, next.knot = knot;
+    if (!(next.length > 0.95 * (knot - t)) || (next.lands && !(knot < t + next.length - 8 * rounding(knot)))) return;
+    next.lands = false, next.pauses = true, next.knot = knot;
     // The whole step is in the piece before the knot: at the knot the next one begins.
     next.length = knot - t - 4 * rounding(knot);
   }
