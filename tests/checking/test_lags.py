@@ -7,7 +7,7 @@ import pytest
 
 from checking.pendulum import late_run, record
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.lags import _regular, _steps, _weights, lags
+from tendonlab.checking.lags import _steps, _weights, lags
 from tendonlab.checking.logs import read_logs
 from tendonlab.checking.regression import FREEDOM, Fit, Unknown
 from tendonlab.checking.terms import Terms
@@ -61,6 +61,6 @@ def test_lags_come_out_with_their_sd_and_in_their_experiment(late: float, tmp_pa
     assert list(by_name.values()) == pytest.approx([0.0] * 3, abs=0.003)
     assert np.all((found.sd > 1e-6) & (found.sd < 0.005))
     assert 0.0 < found.level < 0.1
-    kept = _regular(logs, 100)
+    kept = logs.regular(100)
     assert 50 < len(kept) <= 100
     assert logs.clear[kept].all()

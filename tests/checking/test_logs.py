@@ -82,7 +82,7 @@ def test_whole_steps_are_rolled_without_a_way_round_the_ends(logs: Logs) -> None
     np.testing.assert_array_equal(ahead.moving["p"], logs.moving["p"])
 
 
-@pytest.mark.parametrize("most", [1, 7, 100, 133, 400, 1000])
+@pytest.mark.parametrize("most", [7, 100, 133, 400, 1000])
 def test_thinned_logs_are_clear_even_and_few_enough(logs: Logs, most: int) -> None:
     thin = logs.thinned(most)
     assert thin.clear.all()
@@ -90,6 +90,14 @@ def test_thinned_logs_are_clear_even_and_few_enough(logs: Logs, most: int) -> No
     assert thin.moving["q"].shape == (3, len(thin.run)) == (3, len(thin.time))
     np.testing.assert_allclose(thin.moving["q"], sines(thin.time))
     np.testing.assert_allclose(thin.driving["u"], driven(thin.time))
+
+
+def test_a_sample_that_is_alone_of_its_experiment_is_left_out(logs: Logs) -> None:
+    run = logs.run.copy()
+    run[np.flatnonzero(logs.clear)[-1]] = 2
+    kept = replace(logs, run=run).regular(10_000)
+    assert len(kept) == logs.clear.sum() - 1
+    assert set(run[kept]) == {0, 1}
 
 
 def test_logs_of_a_pendulum_hold_its_derivatives(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
     """The lag of every output in every experiment, all of them together with the parameters."""
     channels = equation.measured
     late = np.tile(_scanned(equation, logs), (len(channels), 1))
-    kept = _regular(logs, SAMPLES)
+    kept = logs.regular(SAMPLES)
     share = np.full(len(equation.predicted), ROUGH_SHARE)
     sd = np.full(late.shape, np.inf)
     for _ in range(ROUNDS):
@@ -74,11 +74,6 @@ def _gain(
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
     return np.bincount(moved.run, nats, late.shape[1])
-
-
-def _regular(logs: Logs, most: int) -> np.ndarray:
-    kept = np.flatnonzero(logs.clear)
-    return kept[:: max(1, -(-len(kept) // most))]
 
 
 def _slopes(equation: Equation, moved: Logs, kept: np.ndarray, channels: tuple[str, ...], at: Terms) -> np.ndarray:
@@ -137,7 +132,7 @@ def _steps(
 def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
     """The lag of all outputs together in each experiment, in whole steps of the logs, at which the equation fits
     best."""
-    kept, num = _regular(logs, SCANNED), len(equation.dataset.experiments)
+    kept, num = logs.regular(SCANNED), len(equation.dataset.experiments)
     at = terms(equation, logs.at(kept))
     fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
     if not np.isfinite(fit.cost):

@@ -85,10 +85,16 @@ class Logs:
         return self._each(lambda name, rows: rows + by * rates if name == signal else rows)
 
     def thinned(self, most: int) -> Logs:
-        """Every so many samples, at most `most`, of those that are clear."""
+        """The logs at `regular` samples alone."""
+        return self.at(self.regular(most))
+
+    def regular(self, most: int) -> np.ndarray:
+        """Every so many samples, at most `most`, of those that are clear. An experiment of which one alone is left has
+        no time to go through: that sample is left out."""
         kept = np.flatnonzero(self.clear)
         kept = kept[:: max(1, -(-len(kept) // most))]
-        return self.at(kept)
+        own = self.run[kept]
+        return np.asarray(kept[np.bincount(own, minlength=1)[own] > 1])
 
     def at(self, kept: np.ndarray) -> Logs:
         """These samples alone."""
