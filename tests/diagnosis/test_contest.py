@@ -23,6 +23,7 @@ from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
+from tendonlab.simulation.prepare import Replay
 
 
 def trial(
@@ -31,9 +32,12 @@ def trial(
     return Trial(effect, SimpleNamespace(**fitted), gain, left_out, doubt, lost)  # type: ignore[arg-type]
 
 
-def fitter_of(*, repeated: bool, bodies: int = 1, replay: str = "injection") -> Any:
+INJECTION = Replay("injection")
+
+
+def fitter_of(*, repeated: bool, bodies: int = 1, replay: Replay = INJECTION) -> Any:
     prepared = [SimpleNamespace(core=SimpleNamespace(position=bodies * [0.0]))]
-    case = SimpleNamespace(prepared=prepared, replay=SimpleNamespace(kind=replay))
+    case = SimpleNamespace(prepared=prepared, replay=replay)
     return SimpleNamespace(floor=SimpleNamespace(repeated=repeated), case=case)
 
 
@@ -184,10 +188,16 @@ def test_that_an_effect_helps_in_each_of_few_experiments_says_little(
 
 
 @pytest.mark.parametrize(
-    ("bodies", "replay", "worth"), [(1, "injection", True), (2, "injection", False), (2, "controller", True)]
+    ("bodies", "replay", "worth"),
+    [
+        (1, INJECTION, True),
+        (2, INJECTION, False),
+        (2, Replay("controller"), True),
+        (2, Replay("controller", feeds_noise=True), False),
+    ],
 )
-def test_near_the_floor_evidence_alone_says_little_where_noise_is_injected_into_several_bodies(
-    bodies: int, replay: str, worth: bool, monkeypatch: pytest.MonkeyPatch
+def test_near_the_floor_evidence_alone_says_little_where_noise_is_carried_into_several_bodies(
+    bodies: int, replay: Replay, worth: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
     of: Any = SimpleNamespace(mean_square=1.2, cost=1000.0, runs=range(7))

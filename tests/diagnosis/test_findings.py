@@ -28,9 +28,9 @@ def contest(trials: list[Trial], accepted: Trial | None, *seen: Any) -> Any:
 def listed(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(answer, "_numbers", lambda *_: {})
 
-    def of(rounds: list[Any], probability: dict[str, float]) -> Any:
+    def of(rounds: list[Any], probability: dict[str, float], selected: tuple[str, ...] = ()) -> Any:
         nothing: Any = None
-        search: Any = SimpleNamespace(rounds=rounds)
+        search: Any = SimpleNamespace(rounds=rounds, selected=selected)
         return findings(nothing, search, probability, nothing, [], 0)
 
     return of
@@ -45,6 +45,13 @@ def test_candidates_are_listed_by_probability_and_then_by_what_they_gain(listed:
     ]  # fmt: skip
     assert rows[2].extra == {"screened_gain": 70.0, "visibility": 7.0}
     assert (rows[1].extra["screened_gain"], rows[1].extra["evidence_gain"]) == (1.0, 90.0)
+
+
+def test_of_twins_the_selected_one_stands_first(listed: Any) -> None:
+    trials = [trial("load:offset", 90.0), trial("actuation:offset", 89.0)]
+    even = {"load:offset": 0.4 + 1e-12, "actuation:offset": 0.4}
+    first, second = listed([contest(trials, trials[1])], even, ("actuation:offset",))
+    assert (first.name, second.name) == ("actuation:offset", "load:offset")
 
 
 def test_the_round_that_accepted_an_effect_speaks_for_it_else_the_first(listed: Any) -> None:

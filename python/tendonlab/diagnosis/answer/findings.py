@@ -24,7 +24,8 @@ def findings(
     judged: Sequence[int],
     seed: int,
 ) -> tuple[EffectFinding, ...]:
-    """Every candidate considered, most probable first; those that were refitted with their numbers."""
+    """Every candidate considered, most probable first, of equally probable ones those that were selected; those that
+    were refitted with their numbers."""
     screened = {s.effect: s for contest in reversed(search.rounds) for s in contest.screened}
     trials = _telling_trials(search)
     rows = []
@@ -40,7 +41,7 @@ def findings(
         rows.append(
             EffectFinding(effect=effect, element=element, probability=probability.get(name, 0.0), extra=extra, **about)
         )
-    return tuple(sorted(rows, key=lambda r: (-r.probability, -_worth(r))))
+    return tuple(sorted(rows, key=lambda r: (-round(r.probability, 6), r.name not in search.selected, -_worth(r))))
 
 
 def _telling_trials(search: Search) -> dict[str, Trial]:
