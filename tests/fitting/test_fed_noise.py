@@ -11,7 +11,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab import _core
-from tendonlab.simulation.command import fed_noise
+from tendonlab.simulation.command import command_of, fed_noise
 from tendonlab.simulation.prepare import Replay, prepare
 from tendonlab.simulation.records import Controller, Experiment
 
@@ -101,7 +101,7 @@ def test_a_missing_sample_adds_nothing(logged: tuple[Experiment, np.ndarray]) ->
     assert np.isfinite(found[1]).all()
 
 
-@pytest.mark.parametrize("case", ["no clock", "no command", "other instants", "no noise"])
+@pytest.mark.parametrize("case", ["no clock", "no command", "other instants", "no noise", "noise of the log alone"])
 def test_nothing_is_added_where_the_log_does_not_tell(case: str, logged: tuple[Experiment, np.ndarray]) -> None:
     experiment, _ = logged
     data, loop = experiment.data, LOOP
@@ -109,6 +109,9 @@ def test_nothing_is_added_where_the_log_does_not_tell(case: str, logged: tuple[E
         loop = replace(LOOP, sample_time=0.0)
     elif case == "no command":
         data = data.drop(columns="motor_torque")
+    elif case == "noise of the log alone":
+        data = data.assign(joint_angle=data["joint_angle"] + NOISE * np.random.default_rng(4).standard_normal(NUM))
+        data = data.assign(motor_torque=command_of(loop, experiment, data["wanted"].to_numpy()))
     elif case == "other instants":
         data = data.iloc[::2]
     else:

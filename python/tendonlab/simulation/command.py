@@ -12,6 +12,7 @@ from tendonlab.simulation.signals import is_noiseless
 from tendonlab.simulation.smoothing import smoothing_spline
 
 FEWEST = 10  # samples of which noise can be told
+HEARD = 0.5  # share of the noise of the reading that the logged command must hold
 OFF_CLOCK = 0.25  # of the period: samples that are further off the ticks do not show what the controller read
 
 
@@ -43,7 +44,8 @@ def fed_noise(controller: Controller, experiment: Experiment, command: str) -> t
     """Ticks of the clock of `controller`, and what was added to its command there: the logged `command` less that of
     the smoothed reading, 0 where a sample is missing. So noise that the sensor feeds back shakes a simulated rig as it
     shook the real one, which eases friction. None where there is no noise or the log does not tell: without a clock,
-    without one of the signals, or with other instants than the ticks."""
+    without one of the signals, with other instants than the ticks, or where the logged command does not follow the
+    noise of the reading."""
     step, time = controller.sample_time, experiment.time
     names = [command, controller.measured, controller.reference, *({controller.disturbance} - {None})]
     if not step > 0 or len(time) < FEWEST or not set(names) <= set(experiment.data.columns):
@@ -57,10 +59,12 @@ def fed_noise(controller: Controller, experiment: Experiment, command: str) -> t
     if there.sum() < FEWEST or is_noiseless(reading):
         return None
     filled = replace(experiment, data=experiment.data.interpolate(method="index", limit_direction="both"))
-    smooth = smoothing_spline(time[there], reading)(time)
-    known = _disturbance(controller, filled, time)
-    added = np.where(there, logged[:, 0] - command_of(controller, filled, smooth), 0.0)
-    return time[0] + step * tick, known + added
+    smooth = command_of(controller, filled, smoothing_spline(time[there], reading)(time))
+    added = np.where(there, logged[:, 0] - smooth, 0.0)
+    asked = command_of(controller, filled, filled.data[controller.measured].to_numpy(dtype=float)) - smooth
+    if not added @ asked > HEARD * (asked @ asked):
+        return None
+    return time[0] + step * tick, _disturbance(controller, filled, time) + added
 
 
 def _disturbance(controller: Controller, experiment: Experiment, at: np.ndarray) -> np.ndarray:
