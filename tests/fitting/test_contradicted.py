@@ -44,3 +44,11 @@ def test_nothing_is_compared_where_the_log_cannot_tell(rig: Dataset, sample_time
     unknown = stated(rig, sample_time=sample_time, kd=0.0)
     assert missed_command(unknown, unknown.system()) == 0.0
     assert choose_replay(unknown, unknown.system()).kind == "controller"
+
+
+@pytest.mark.parametrize("sample_time", [None, 0.0])
+def test_noise_is_fed_back_where_the_controller_has_a_clock(rig: Dataset, sample_time: float | None) -> None:
+    given = rig if sample_time is None else stated(rig, sample_time=sample_time)
+    replay = choose_replay(given, given.system())
+    assert replay.kind == "controller"
+    assert replay.feeds_noise == replay.carries_noise == (sample_time is None)

@@ -9,7 +9,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of
-from tendonlab.simulation.command import command_of
+from tendonlab.simulation.command import command_of, fed_noise
 from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.system import System
 
@@ -31,7 +31,9 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
     damper must outweigh friction that falls with speed: else the simulator sticks and slips where the rig slides."""
     controller = dataset.controller
     if controller is not None and missed_command(dataset, system) <= CONTRADICTED:
-        return Replay("controller", controller.kp, controller.kd, controller.measured, feeds_noise=True)
+        driven = system.info.inputs[0].name
+        feeds = any(fed_noise(controller, e, driven) is not None for e in dataset.train)
+        return Replay("controller", controller.kp, controller.kd, controller.measured, feeds_noise=feeds)
     first = next((s.name for s in system.info.outputs if s.axis == 0), None)
     command = system.info.inputs[0].name if system.info.commanded else None  # another input may stand in for it
     if first is None or first not in dataset.outputs or command not in dataset.inputs:

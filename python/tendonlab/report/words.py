@@ -18,7 +18,7 @@ VERDICTS = {
 STAGES = {"nominal": "nominal", "refitted": "refitted", "with_effect": "with effect"}
 REPLAYS = {
     "injection": "logged inputs, with the measured motion fed back to the simulator through the motor port",
-    "controller": "rig and controller simulated together in free run, with the noise that the log shows in the command",
+    "controller": "rig and controller simulated together in free run, with any noise that the logged command shows",
     "free": "free run on the logged inputs",
     "inverse": "torque predicted from the measured motion",
 }

@@ -105,8 +105,8 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
         return DETECT.passed(t) and (not ahead or predicts_better(fitter, base, t.fitted))
 
     established = {t.effect for t in trials if establishes(t)}
-    known, failed = established, refitted.failed
-    round_ = Round.of(others, screened, trials, established=known, bar=DETECT, accepted=holder, failed=failed)
+    failed = refitted.failed
+    round_ = Round.of(others, screened, trials, established=established, bar=DETECT, accepted=holder, failed=failed)
     return Place(others, holder, round_)
 
 
