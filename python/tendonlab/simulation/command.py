@@ -9,7 +9,6 @@ import numpy as np
 from tendonlab.arguments import JITTER
 from tendonlab.simulation.records import Controller, Experiment
 from tendonlab.simulation.signals import is_noiseless
-from tendonlab.simulation.smoothing import smoothing_spline
 
 FEWEST = 10  # samples of which noise can be told
 HEARD = 0.5  # share of the noise of the reading that the logged command must hold
@@ -46,6 +45,8 @@ def fed_noise(controller: Controller, experiment: Experiment, command: str) -> t
     shook the real one, which eases friction. None where there is no noise or the log does not tell: without a clock,
     without one of the signals, with other instants than the ticks, or where the logged command does not follow the
     noise of the reading."""
+    from tendonlab.simulation.smoothing import smoothing_spline  # loads scipy
+
     step, time = controller.sample_time, experiment.time
     names = [command, controller.measured, controller.reference, *({controller.disturbance} - {None})]
     if not step > 0 or len(time) < FEWEST or not set(names) <= set(experiment.data.columns):
