@@ -20,8 +20,8 @@ def screened(effect: str, gain: float) -> Any:
     return SimpleNamespace(effect=effect, gain=gain, visibility=7.0)
 
 
-def contest(trials: list[Trial], accepted: Trial | None, *seen: Any) -> Any:
-    return SimpleNamespace(trials=trials, accepted=accepted, screened=seen)
+def contest(trials: list[Trial], accepted: Trial | None, *seen: Any, **probability: float) -> Any:
+    return SimpleNamespace(trials=trials, accepted=accepted, screened=seen, probability=probability)
 
 
 @pytest.fixture
@@ -45,6 +45,13 @@ def test_candidates_are_listed_by_probability_and_then_by_what_they_gain(listed:
     ]  # fmt: skip
     assert rows[2].extra == {"screened_gain": 70.0, "visibility": 7.0}
     assert (rows[1].extra["screened_gain"], rows[1].extra["evidence_gain"]) == (1.0, 90.0)
+
+
+def test_the_round_where_an_effect_is_most_probable_speaks_for_it(listed: Any) -> None:
+    """Beside its twin it explains nothing; in the place of its twin it explains as much."""
+    beside, instead = trial("a", -50.0, "twin"), trial("a", 90.0, "other")
+    (row,) = listed([contest([beside], None, a=0.0), contest([instead], None, a=0.4)], {"a": 0.4})
+    assert (row.extra["evidence_gain"], row.extra["beside"]) == (90.0, ["other"])
 
 
 def test_of_twins_the_selected_one_stands_first(listed: Any) -> None:

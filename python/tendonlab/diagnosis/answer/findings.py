@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -45,13 +46,15 @@ def findings(
 
 
 def _telling_trials(search: Search) -> dict[str, Trial]:
-    """Of each effect the trial in the first round that tried it, or in the round that accepted it."""
-    chosen: dict[str, Trial] = {}
+    """Of each effect the trial in the round that accepted it, else in the first of those where it is most probable."""
+    chosen: dict[str, tuple[float, Trial]] = {}
     for contest in search.rounds:
         for trial in contest.trials:
-            if trial.effect not in chosen or trial is contest.accepted:
-                chosen[trial.effect] = trial
-    return chosen
+            accepted = trial is contest.accepted
+            share = math.inf if accepted else contest.probability.get(trial.effect, 0.0)
+            if trial.effect not in chosen or accepted or share > chosen[trial.effect][0]:
+                chosen[trial.effect] = share, trial
+    return {name: trial for name, (_, trial) in chosen.items()}
 
 
 def _numbers(fitter: Fitter, trial: Trial, refitted: Replayed, judged: Sequence[int], seed: int) -> dict[str, Any]:
