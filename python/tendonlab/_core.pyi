@@ -243,7 +243,8 @@ class Settings:
         position_scale: float = 1e-2,
         velocity_scale: float = 1e-2,
         max_attempts: int = 20_000_000,
-        ports: bool = False,
+        ports: Sequence[str] = (),
+        outputs: Sequence[int] | None = None,
     ) -> None: ...
 
 def simulate(

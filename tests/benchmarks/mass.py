@@ -74,7 +74,8 @@ def driven(*, force: bool) -> Problem:
         system=_system(AMPLITUDE),
         experiment=sine(time),
         read=_read_force if force else _read_motion,
-        reads_ports=force,
+        reads=(0,) if force else (0, 1),
+        ports=("force",) if force else (),
         core=_splined(time),
     )
 
@@ -95,7 +96,8 @@ def dragged() -> Problem:
         system=_system(1.0, spring),
         experiment=Experiment(name="drag", data=_frame(time, "pulled_end", SPEED * time)),
         read=_read_force,
-        reads_ports=True,
+        reads=(0,),
+        ports=("force",),
     )
 
 
@@ -132,4 +134,4 @@ def _read_motion(run: dict[str, Any]) -> np.ndarray:
 
 
 def _read_force(run: dict[str, Any]) -> np.ndarray:
-    return np.stack([run["outputs"][0], run["ports"][0][3]], axis=1)
+    return np.stack([run["outputs"][0], run["ports"][0][0]], axis=1)

@@ -103,6 +103,7 @@ def coupled(*, tensions: bool, duration: float = 10.0) -> Problem:
         system=System(kind="ccsrm", effects=EFFECTS, parameters=VALUES),
         experiment=Experiment(name="sine", data=pd.DataFrame({"driver_angle": driver}, index=pd.Index(time, name="t"))),
         read=_read_friction if tensions else _read_angle,
+        reads=(0, 1, 2) if tensions else (0,),
     )
 
 

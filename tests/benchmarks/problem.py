@@ -24,8 +24,8 @@ class Problem:
 
     `rate` and `outputs` take `parameters`; `units`: the size of each state, SI, which tools without absolute tolerances
     per state count them in. The initial state is zero. `read`: picks the same outputs, (samples, k), from what the core
-    gives; `reads_ports` says whether it needs the ports recorded. `core`: the experiment as the core takes it, where it
-    is not what `prepare` makes of `experiment`."""
+    gives, which records the outputs `reads`, by index (default: all), and of each port the quantities `ports`. `core`:
+    the experiment as the core takes it, where it is not what `prepare` makes of `experiment`."""
 
     name: str
     text: str
@@ -38,7 +38,8 @@ class Problem:
     system: System
     experiment: Experiment
     read: Callable[[dict[str, Any]], np.ndarray] = field(repr=False)
-    reads_ports: bool = False
+    reads: tuple[int, ...] | None = None
+    ports: tuple[str, ...] = ()
     core: _core.Experiment | None = None
 
     def core_experiment(self) -> _core.Experiment:
@@ -47,7 +48,7 @@ class Problem:
 
     def settings(self, tolerance: float) -> _core.Settings:
         """How the core goes through it."""
-        return self._prepared.settings(tolerance, ports=self.reads_ports)
+        return self._prepared.settings(tolerance, ports=self.ports, outputs=self.reads)
 
     @cached_property
     def _prepared(self) -> Prepared:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
+from tendonlab.simulation.catalog import PORT_QUANTITIES
 from tendonlab.simulation.signals import hold, linear, smooth
 from tendonlab.simulation.system import System
 
@@ -92,7 +93,11 @@ def run(
     names = [p.name for p in info.parameters]
     seeds = [("parameter", names.index(n)) if n in names else (n[:8], int(n[8:])) for n in by]
     settings = _core.Settings(
-        tolerance=tolerance, position_scale=scales[0], velocity_scale=scales[1], max_attempts=max_attempts, ports=ports
+        tolerance=tolerance,
+        position_scale=scales[0],
+        velocity_scale=scales[1],
+        max_attempts=max_attempts,
+        ports=PORT_QUANTITIES if ports else (),
     )
     done = _core.simulate(system.kind, system.values(), system.active(keep_zero=keep_zero), experiment, seeds, settings)
     return Run(

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <optional>
+
 #include "tendonlab/bindings/bind.hpp"
 #include "tendonlab/bindings/convert.hpp"
 #include "tendonlab/bindings/pickle.hpp"
@@ -76,9 +79,33 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
   py::dict out(py::arg("attempts") = run.attempts, py::arg("rejected") = run.rejected, py::arg("events") = run.events);
   out["outputs"] = to_array(std::move(run.value), {run.channels, samples});
   if (!seeds.empty()) out["gradient"] = to_array(std::move(run.gradient), {run.width, run.channels, samples});
-  if (settings.ports)
-    out["ports"] = to_array(std::move(run.port), {static_cast<py::ssize_t>(of.info().ports.size()), 4, samples});
+  if (settings.ports.any())
+    out["ports"] = to_array(std::move(run.port), {static_cast<py::ssize_t>(of.info().ports.size()),
+                                                  static_cast<py::ssize_t>(settings.ports.count()), samples});
   return out;
+}
+
+/// What is recorded of ports, by its names.
+integrate::PortRows rows_named(const std::vector<std::string>& names) {
+  using integrate::PortRows;
+  static constexpr std::array<std::string_view, PortRows::all> known{"velocity", "position", "load", "force"};
+  PortRows rows;
+  for (const std::string& name : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      throw ParameterError(sentence("ports: \"", name, "\": expected velocity, position, load or force"));
+    rows.wanted |= 1u << (found - known.begin());
+  }
+  return rows;
+}
+std::uint32_t bits_of(const std::optional<std::vector<unsigned>>& outputs) {
+  if (!outputs) return ~0u;
+  std::uint32_t bits = 0;
+  for (const unsigned c : *outputs) {
+    if (c >= 32) throw ParameterError(sentence("outputs: ", c, ": expected the index of an output"));
+    bits |= 1u << c;
+  }
+  return bits;
 }
 
 /// Rows of values: the equation of motion with each.
@@ -155,14 +182,19 @@ void bind_experiments(py::module_& module) {
       .def_readonly("position", &Experiment::position)
       .def_readonly("velocity", &Experiment::velocity);
   py::class_<integrate::Settings>(module, "Settings", "Tolerance and scales of the integration.")
-      .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts, bool ports) {
+      .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts,
+                       const std::vector<std::string>& ports, const std::optional<std::vector<unsigned>>& outputs) {
              require_within("tolerance", tolerance, 1e-14, 0.1);
              require_within("position_scale", position_scale, 1e-300, 1e300);
              require_within("velocity_scale", velocity_scale, 1e-300, 1e300);
-             return integrate::Settings{tolerance, position_scale, velocity_scale, max_attempts, ports};
+             return integrate::Settings{tolerance,         position_scale, velocity_scale, max_attempts,
+                                        rows_named(ports), bits_of(outputs)};
            }),
            py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,
-           py::arg("velocity_scale") = 1e-2, py::arg("max_attempts") = 20'000'000L, py::arg("ports") = false);
+           py::arg("velocity_scale") = 1e-2, py::arg("max_attempts") = 20'000'000L,
+           py::arg("ports") = std::vector<std::string>{}, py::arg("outputs") = py::none(),
+           "`ports`: what to record of each port: velocity, position, load, force. `outputs`: indices of those to\n"
+           "record, default all; the others stay 0.");
 }
 }  // namespace
 
@@ -179,7 +211,7 @@ void bind_systems(py::module_& module) {
   bind_experiments(module);
   module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
              py::arg("seeds"), py::arg("settings"),
-             "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, 4, samples).");
+             "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, wanted quantities, samples).");
   module.def(
       "balance", &balance, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
       py::arg("position"), py::arg("velocity"),

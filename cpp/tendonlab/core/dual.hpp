@@ -137,8 +137,9 @@ TENDONLAB_DUAL abs(const Dual<T, n>& a) {
 TENDONLAB_DUAL select(bool condition, const Dual<T, n>& a, const Dual<T, n>& b) {
   return condition ? a : b;
 }
-template <int n>
-TENDONLAB_INLINE Dual<Lanes, n> select(const Mask& m, const Dual<Lanes, n>& a, const Dual<Lanes, n>& b) {
+template <int size, int n>
+TENDONLAB_INLINE Dual<Pack<size>, n> select(const PackMask<size>& m, const Dual<Pack<size>, n>& a,
+                                            const Dual<Pack<size>, n>& b) {
   return with_partials(select(m, a.value, b.value), a.d, [&](std::size_t i) { return select(m, a.d[i], b.d[i]); });
 }
 template <class T, int n>

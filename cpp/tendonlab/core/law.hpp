@@ -89,6 +89,12 @@ inline constexpr bool takes_over_dry_friction = false;
 template <class Law>
 inline constexpr bool takes_over_dry_friction<Law, std::void_t<decltype(&Law::dry_share)>> = true;
 
+/// A law that states `bool mirrored` learns whether its port is.
+template <class Law, class = void>
+inline constexpr bool asks_if_mirrored = false;
+template <class Law>
+inline constexpr bool asks_if_mirrored<Law, std::void_t<decltype(&Law::mirrored)>> = true;
+
 /// A closed list of laws, in the order in which reports show them and slots apply them.
 template <template <class> class... Law>
 struct Laws {

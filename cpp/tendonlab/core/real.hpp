@@ -90,6 +90,24 @@ TENDONLAB_INLINE double cos(double x) {
   return turn_sine(x * inverse_turn + 0.25);
 }
 
+/// x^exponent of a normal x > 0, to a hundredth of the exponent: enough for the length of a step.
+template <class W, class Bits>
+TENDONLAB_INLINE W roughly_power_of(const W& x, double exponent) {
+  Bits bits;
+  std::memcpy(&bits, &x, sizeof x);
+  const Bits exponent_bits = (bits >> 52) | 0x4330000000000000;  // 2^52 and the exponent, as a double
+  bits = (bits & 0xfffffffffffff) | 0x3ff0000000000000;
+  W octave, mantissa;
+  std::memcpy(&octave, &exponent_bits, sizeof x);
+  std::memcpy(&mantissa, &bits, sizeof x);  // from 1 to 2: a parabola comes within 0.01 of its logarithm
+  octave = octave - (4503599627370496.0 + 1023.0);
+  return exp_of<W, Bits>((0.6931471805599453 * exponent) *
+                         (octave + mantissa * (2.0 - mantissa * (1.0 / 3.0)) - 5.0 / 3.0));
+}
+TENDONLAB_INLINE double roughly_power(double x, double exponent) {
+  return roughly_power_of<double, std::int64_t>(x, exponent);
+}
+
 inline double log(double x) {
   return std::log(x);
 }

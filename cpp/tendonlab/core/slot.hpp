@@ -41,6 +41,11 @@ struct Slot {
     List::for_each([&](auto* law) { s |= std::decay_t<decltype(*law)>::sees; });
     return s;
   }
+  static constexpr bool asks_if_mirrored() {
+    bool asks = false;
+    List::for_each([&](auto* law) { asks = asks || tendonlab::asks_if_mirrored<std::decay_t<decltype(*law)>>; });
+    return asks;
+  }
   static constexpr int gaps() {
     int n = 0;
     List::for_each([&](auto* law) { n += opens_gap<std::decay_t<decltype(*law)>>; });

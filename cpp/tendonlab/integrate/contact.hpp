@@ -8,7 +8,7 @@ template <class System, class T>
 class Contact : public Sticking<System, T> {
   using Base = Sticking<System, T>;
   static constexpr int n = System::dof, directions = System::directions, num_modes = modes<System>;
-  static constexpr bool general = System::moving || systems::drives_a_port<System>();
+  static constexpr bool general = System::moving || systems::drives_a_port<System>();  ///< levers do not tell all
   using Y = StateOf<System, T>;
   using F = Frame<System, T>;
   using Base::along, Base::prescribed, Base::representative, Base::side_port, Base::weightless;
@@ -26,9 +26,9 @@ class Contact : public Sticking<System, T> {
   template <class Inputs>
   T sliding_velocity(int m, const Y& y, const F& frame, const Inputs& in) const {
     if constexpr (general)
-      return couple(system, y.at, frame.mode, in).port[static_cast<std::size_t>(representative[m])].velocity;
-    else
-      return along(system, representative[m], y.at.velocity);
+      if (System::moving || prescribed[m])
+        return couple(system, y.at, frame.mode, in).port[static_cast<std::size_t>(representative[m])].velocity;
+    if constexpr (!System::moving) return along(system, representative[m], y.at.velocity);
   }
   template <class Inputs>
   T stretch(int m, const Y& y, const F& frame, const Inputs& in) const {

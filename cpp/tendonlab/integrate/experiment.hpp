@@ -48,11 +48,27 @@ struct Seed {
 };
 inline constexpr std::size_t seeds_at_once = 8;  ///< that one simulation carries along; more take further ones
 
+/// Which quantities of ports are recorded.
+struct PortRows {
+  enum Quantity { velocity, position, load, force };
+  static constexpr int all = 4;
+  std::uint32_t wanted = 0;  ///< a bit per quantity
+  bool has(int quantity) const { return (wanted >> quantity & 1u) != 0; }
+  bool any() const { return wanted != 0; }
+  std::size_t count() const { return before(all); }
+  /// How many wanted ones stand before a quantity: where its row lies.
+  std::size_t before(int quantity) const {
+    std::size_t n = 0;
+    for (int k = 0; k < quantity; ++k) n += has(k);
+    return n;
+  }
+};
+
 struct Settings {
   double tolerance = 1e-6;
   double position_scale = 1e-2, velocity_scale = 1e-2;  ///< error is relative to scale + |value|
   long max_attempts = 20'000'000;
-  bool ports = false;           ///< also record what each port sees and does
+  PortRows ports;               ///< what to record of each port
   std::uint32_t outputs = ~0u;  ///< a bit per output that is recorded; the others stay 0
 };
 
@@ -60,7 +76,7 @@ struct Trajectory {
   int channels = 0, samples = 0, width = 0;
   std::vector<double> value;     ///< [channel][sample]
   std::vector<double> gradient;  ///< [column][channel][sample]
-  std::vector<double> port;      ///< [port][velocity, position, load, force][sample]
+  std::vector<double> port;      ///< [port][wanted quantity][sample]
   long attempts = 0, rejected = 0, events = 0;
 
   /// Where the samples of each output go; null: nobody wants them.
@@ -71,6 +87,10 @@ struct Trajectory {
     for (int c = 0; c < channels; ++c)
       all.push_back((wanted >> c & 1u) != 0 ? value.data() + static_cast<std::ptrdiff_t>(c) * samples : nullptr);
     return all;
+  }
+  /// Where the samples of one quantity of a port go.
+  double* port_row(std::size_t of, const PortRows& shown, int quantity) {
+    return port.data() + (of * shown.count() + shown.before(quantity)) * static_cast<std::size_t>(samples);
   }
   /// Writes the derivatives of one output at one sample into `width` columns of the gradient from `column` on.
   template <class T>

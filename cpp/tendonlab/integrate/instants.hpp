@@ -13,35 +13,38 @@ class Instants {
 
  public:
   Instants(const System& of, const Experiment& experiment) : system(of), in(experiment) {}
-  /// The outputs at eight states, as their sensors show them; those that need more than `wanted` are meaningless.
+  /// The modes and inputs of the step that the next instants are in.
   template <class Modes>
-  [[gnu::noinline, gnu::flatten]] auto outputs(const Y& y, const Modes& modes, const Readings<double>& inputs,
-                                               const Needs& wanted) {
-    At at = instants(y, modes, inputs);
+  void begin(const Modes& modes, const Readings<double>& inputs) {
+    for (std::size_t m = 0; m < modes.mode.size(); ++m) frame.mode[m] = Lanes(modes.mode[m]);
+    in.follow(inputs);
+  }
+  /// The outputs at eight states, as their sensors show them; those that need more than `wanted` are meaningless.
+  [[gnu::noinline, gnu::flatten]] auto outputs(const Y& y, const Needs& wanted) {
+    At at{*this, y, {}};
     auto seen = observe(system, at, wanted);
     for (std::size_t c = 0; c < seen.size(); ++c) seen[c] = system.sensor[c].apply(seen[c]);
     return seen;
   }
-  /// Velocity, position, load and force of each port.
-  template <class Modes>
-  [[gnu::noinline, gnu::flatten]] auto ports(const Y& y, const Modes& modes, const Readings<double>& inputs) {
-    At at = instants(y, modes, inputs);
-    std::array<Lanes, 4 * slots<System>> rows;
+  /// What each port sees and does: row(port, quantity, values) for those `shown`.
+  template <class Row>
+  [[gnu::noinline, gnu::flatten]] void ports(const Y& y, const PortRows& shown, Row&& row) {
+    At at{*this, y, {}};
     unroll<slots<System>>([&](auto i) TENDONLAB_ALWAYS {
       const auto& port = at.coupled().port[i];
-      rows[4 * i] = port.velocity, rows[4 * i + 1] = port.position, rows[4 * i + 2] = port.load;
-      rows[4 * i + 3] = at.template force<i>();
+      if (shown.has(PortRows::velocity)) row(i, PortRows::velocity, port.velocity);
+      if (shown.has(PortRows::position)) row(i, PortRows::position, port.position);
+      if (shown.has(PortRows::load)) row(i, PortRows::load, port.load);
+      if (shown.has(PortRows::force)) row(i, PortRows::force, at.template force<i>());
     });
-    return rows;
   }
 
  private:
   using Coupled = decltype(std::declval<const System&>().couple(
       std::declval<Y>().at, std::declval<Frame<System, Lanes>>().mode, std::declval<LaneReadings>()));
   struct At {
-    Instants& all;
+    const Instants& all;
     const Y& y;
-    const Readings<double>& inputs;
     std::optional<Coupled> seen;
 
     /// Makes what it is converted to, in place: ports of many lanes are large.
@@ -50,10 +53,7 @@ class Instants {
       operator Coupled() const { return at.all.system.couple(at.y.at, at.all.frame.mode, at.all.in); }
     };
     const auto& coupled() {
-      if (!seen) {
-        all.in.follow([&](int) -> const Readings<double>& { return inputs; });
-        seen.emplace(Call{*this});
-      }
+      if (!seen) seen.emplace(Call{*this});
       return *seen;
     }
     template <int i>
@@ -64,12 +64,6 @@ class Instants {
       return std::get<slot>(all.system.slot).respond(coupled().port[slot], z).force;
     }
   };
-
-  template <class Modes>
-  At instants(const Y& y, const Modes& modes, const Readings<double>& inputs) {
-    for (std::size_t m = 0; m < modes.mode.size(); ++m) frame.mode[m] = Lanes(modes.mode[m]);
-    return {*this, y, inputs, {}};
-  }
 
   const System& system;
   LaneReadings in;

@@ -7,10 +7,18 @@ class LaneReadings : public Readings<Lanes> {
  public:
   using Readings<Lanes>::Readings;
   explicit LaneReadings(const Experiment& of) : Readings<Lanes>(of, 0.0, 0.0, 0.0) {}
+  /// Every lane reads as `one` does now.
+  void follow(const Readings<double>& one) {
+    late = one.late, sensor_late = one.sensor_late, bias = one.bias, held = one.held, side = one.side;
+    for (std::size_t k = 0; k < from.inputs.size(); ++k)
+      if (from.inputs[k].holds) piece[k].fill(one.piece[k]);
+    if (from.loop.reference.holds) reference_piece.fill(one.reference_piece);
+    if (from.loop.disturbance.holds) disturbance_piece.fill(one.disturbance_piece);
+  }
   /// Lane l reads as `one(l)` does now.
   template <class One>
-  void follow(One one) {
-    const auto numbers = [&](auto field) TENDONLAB_ALWAYS { return by_lane([&](int l) { return one(l).*field; }); };
+  void follow_each(One one) {
+    const auto numbers = [&](auto field) TENDONLAB_ALWAYS { return by_lane<Lanes>([&](int l) { return one(l).*field; }); };
     const auto pieces = [&](auto field) {
       PieceOf<Lanes> all;
       for (std::size_t l = 0; l < all.size(); ++l) all[l] = field(one(static_cast<int>(l)));

@@ -20,6 +20,7 @@ struct SlotBlocks {
   Response<T> value;
   T force_by[columns], rate_by[columns], force_z{}, decay{};
 
+  SlotBlocks() = default;
   template <class D>
   TENDONLAB_INLINE SlotBlocks(const Slot& slot, const Sliding<D>& port, const T& z) {
     const D* source[num_seen + 1];
@@ -37,6 +38,24 @@ struct SlotBlocks {
     }
   }
 
+  /// Of one port among several whose laws have answered together.
+  template <class L, class D>
+  TENDONLAB_INLINE void take_lane(int lane, const Response<L>& all, const Sliding<D>& port) {
+    value = {all.force.value[lane], all.rate.value[lane]};
+    for (std::size_t q = 0; q < columns; ++q) force_by[q] = rate_by[q] = 0.0;
+    std::size_t k = 0;
+    Sliding<D>::for_each_field([&](std::string_view, unsigned bit, auto access) TENDONLAB_ALWAYS {
+      if ((Slot::sees & bit) == 0) return;
+      const double force = all.force.d[k][lane], rate = all.rate.d[k][lane];
+      for (std::size_t q = 0; q < columns; ++q) {
+        force_by[q] += force * access(port).d[q];
+        rate_by[q] += rate * access(port).d[q];
+      }
+      ++k;
+    });
+    if constexpr (has > 0) force_z = all.force.d[num_seen][lane], decay = -all.rate.d[num_seen][lane];
+  }
+
  private:
   template <class L, class D>
   static TENDONLAB_INLINE void chain_rule(T (&by)[columns], const L& f, const D* const (&source)[num_seen + 1]) {
@@ -48,6 +67,27 @@ struct SlotBlocks {
   }
 };
 
+/// The same for `count` ports of one element, by one pass of their laws.
+template <int columns, int count, class Slot, class D, class Memory>
+[[gnu::noinline, gnu::flatten]] std::array<SlotBlocks<Slot, double, columns>, count> slot_blocks_together(
+    const Slot& slot, const Sliding<D>* port, const Memory& memory, int first) {
+  using P = Pack<4>;
+  constexpr int seen = Slot::num_seen, has = Slot::states;
+  using L = Dual<P, seen + has>;
+  const auto all = side_by_side<P, Slot, count>(port);
+  Sliding<L> own;
+  own.direction = all.direction, own.side = all.side;
+  int k = 0;
+  Sliding<L>::for_each_field([&](std::string_view, unsigned bit, auto access) TENDONLAB_ALWAYS {
+    if ((Slot::sees & bit) != 0) access(own) = variable<L>(access(all), k++);
+  });
+  L state(P(0.0));
+  if constexpr (has > 0) state = variable<L>(memories_side_by_side<P, count>(memory, first), seen);
+  const Response<L> f = slot.respond(own, state);
+  std::array<SlotBlocks<Slot, double, columns>, count> each;
+  for (int l = 0; l < count; ++l) each[static_cast<std::size_t>(l)].take_lane(l, f, port[l]);
+  return each;
+}
 template <int columns, class Slot, class T, class D>
 [[gnu::noinline, gnu::flatten]] SlotBlocks<Slot, T, columns> slot_blocks(const Slot& slot, const Sliding<D>& port,
                                                                          const T& z) {
@@ -79,26 +119,12 @@ TENDONLAB_INLINE const T& under(const Dual<T, n>& a) {
 }
 
 /// Adds what slot i does to the blocks, as efforts: inertia comes last.
-template <int i, class System, class T, class Coupled>
-TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, const Coupled& coupled,
-                               const StateOf<System, T>& y) {
-  using Slot = SlotOf<System, i>;
-  constexpr int n = System::dof, columns = 2 * n + 1, m = memory_before<System, i>(), has = Slot::states;
-  const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
-  if constexpr (has > 0) {
-    a.decay[m] = T(0.0);
-    for (int q = 0; q < columns; ++q) a.memory_by[m][q] = T(0.0);
+template <int i, class System, class T, class Coupled, class Blocks>
+TENDONLAB_INLINE void add_blocks(Arrowhead<System, T>& a, const System& system, const Coupled& coupled,
+                                 const Blocks& b) {
+  constexpr int n = System::dof, columns = 2 * n + 1, m = memory_before<System, i>(), has = SlotOf<System, i>::states;
+  if constexpr (has > 0)
     for (int j = 0; j < n; ++j) a.pull[m][j] = T(0.0);
-  }
-  if (slot.active == 0) return;
-  T z(0.0);
-  if constexpr (has > 0) z = y.memory[m];
-  const auto b = [&] {
-    if constexpr (inlines_laws<System, T>)
-      return SlotBlocks<Slot, T, columns>(slot, coupled.port[i], z);
-    else
-      return slot_blocks<columns>(slot, coupled.port[i], z);
-  }();
   unroll<n>([&](auto j) __attribute__((always_inline)) {
     if constexpr (System::joined[i][j]) {
       const auto& arm = geometry_of(system, coupled).lever[i][j];
@@ -115,6 +141,32 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
     a.rate.memory[m] = b.value.rate;
     a.decay[m] = b.decay;
     for (int q = 0; q < columns; ++q) a.memory_by[m][q] = b.rate_by[q];
+  }
+}
+/// Adds what slot i does, and those that it speaks for.
+template <int i, class System, class T, class Coupled>
+TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, const Coupled& coupled,
+                               const StateOf<System, T>& y) {
+  using Slot = SlotOf<System, i>;
+  constexpr int n = System::dof, columns = 2 * n + 1, m = memory_before<System, i>(), has = Slot::states,
+                together = alike<System, T, i>();
+  const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+  if (slot.active == 0) {
+    if constexpr (has > 0) {
+      a.decay[m] = T(0.0);
+      for (int q = 0; q < columns; ++q) a.memory_by[m][q] = T(0.0);
+      for (int j = 0; j < n; ++j) a.pull[m][j] = T(0.0);
+    }
+  } else if constexpr (together == 1) {
+    T z(0.0);
+    if constexpr (has > 0) z = y.memory[m];
+    if constexpr (inlines_laws<System, T>)
+      add_blocks<i>(a, system, coupled, SlotBlocks<Slot, T, columns>(slot, coupled.port[i], z));
+    else
+      add_blocks<i>(a, system, coupled, slot_blocks<columns>(slot, coupled.port[i], z));
+  } else if constexpr (together > 1) {
+    const auto each = slot_blocks_together<columns, together>(slot, &coupled.port[i], y.memory, m);
+    unroll<together>([&](auto l) TENDONLAB_ALWAYS { add_blocks<i + l>(a, system, coupled, each[l]); });
   }
 }
 

@@ -125,6 +125,77 @@ TENDONLAB_INLINE Response<S> respond_for_step(const Slot& slot, const Port& at, 
     return respond(slot, at, z);
 }
 
+/// How many ports from i on are one element, answered by one pass of its laws, side by side: 1 where that would save
+/// nothing, 0 for those that an earlier port speaks for. Only in plain simulations of one point: elsewhere the words of
+/// the processor are filled by lanes or directions.
+template <class System, class T, int i>
+constexpr int alike() {
+  constexpr int fewest = 3, most = 4;
+  if constexpr (!std::is_same_v<T, double> || SlotOf<System, i>::asks_if_mirrored()) {
+    return 1;
+  } else {
+    constexpr auto first = static_cast<int>(systems::first_port<System>(i));
+    int run = 0;
+    while (first + run < slots<System> && System::ports[static_cast<std::size_t>(first + run)].element ==
+                                              System::ports[first].element)
+      ++run;
+    const int all = run / most * most + (run % most >= fewest ? run % most : 0), place = i - first;
+    if (place >= all) return 1;
+    return place % most > 0 ? 0 : std::min(most, all - place);
+  }
+}
+/// What several ports see, side by side; the last one fills up.
+template <class P, class Slot, int count, class Port>
+TENDONLAB_INLINE Sliding<P> side_by_side(const Port* port) {
+  const auto lanes = [&](auto of) TENDONLAB_ALWAYS {
+    return by_lane<P>([&](int l) TENDONLAB_ALWAYS { return of(port[l < count ? l : count - 1]); });
+  };
+  Sliding<P> all;
+  all.direction = lanes([](const auto& one) { return one.direction; });
+  all.side = lanes([](const auto& one) { return one.side; });
+  Sliding<P>::for_each_field([&](std::string_view, unsigned bit, auto access) TENDONLAB_ALWAYS {
+    if ((Slot::sees & bit) != 0)
+      access(all) = lanes([&](const auto& one) TENDONLAB_ALWAYS { return plain(access(one)); });
+  });
+  return all;
+}
+/// The memories of several ports, side by side.
+template <class P, int count, class Memory>
+TENDONLAB_INLINE P memories_side_by_side(const Memory& memory, int first) {
+  return by_lane<P>([&](int l) TENDONLAB_ALWAYS {
+    return memory[static_cast<std::size_t>(first + (l < count ? l : count - 1))];
+  });
+}
+
+template <class Slot, int count, class Port, class Memory>
+[[gnu::noinline, gnu::flatten]] Response<Pack<4>> respond_together(const Slot& slot, const Port* port,
+                                                                   const Memory& memory, int first) {
+  using P = Pack<4>;
+  P z(0.0);
+  if constexpr (Slot::states > 0) z = memories_side_by_side<P, count>(memory, first);
+  return slot.respond(side_by_side<P, Slot, count>(port), z);
+}
+/// Calls f(i, response) for each port i that has laws.
+template <class System, class T, class Coupled, class Memory, class F>
+TENDONLAB_INLINE void each_response(const System& system, const Coupled& c, const Memory& memory, F&& f) {
+  unroll<slots<System>>([&](auto i) TENDONLAB_ALWAYS {
+    constexpr int m = memory_before<System, i>(), together = alike<System, T, i>();
+    using Slot = SlotOf<System, i>;
+    const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
+    if (slot.active == 0) return;
+    if constexpr (together == 1) {
+      T z(0.0);
+      if constexpr (Slot::states > 0) z = memory[m];
+      f(i, respond_for_step<inlines_laws<System, T>>(slot, c.port[i], z));
+    } else if constexpr (together > 1) {
+      const auto all = respond_together<Slot, together>(slot, &c.port[i], memory, m);
+      unroll<together>([&](auto l) TENDONLAB_ALWAYS {
+        f(std::integral_constant<int, i + l>{}, Response<T>{all.force[l], all.rate[l]});
+      });
+    }
+  });
+}
+
 template <class System, class T, class Inputs>
 TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
                                    const Inputs& in) {
@@ -134,14 +205,8 @@ TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T
   const auto& geometry = geometry_of(system, c);
   Rate<T, n, memories<System>> r;
   r.acceleration = c.applied;
-  unroll<slots<System>>([&](auto i) __attribute__((always_inline)) {
-    constexpr int m = memory_before<System, i>(), has = SlotOf<System, i>::states;
-    const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
-    if (slot.active == 0) return;
-    T z(0.0);
-    if constexpr (has > 0) z = y.memory[m];
-    const Response<T> f = respond_for_step<inlines>(slot, c.port[i], z);
-    if constexpr (has > 0) r.memory[m] = f.rate;
+  each_response<System, T>(system, c, y.memory, [&](auto i, const Response<T>& f) TENDONLAB_ALWAYS {
+    if constexpr (SlotOf<System, i>::states > 0) r.memory[memory_before<System, i>()] = f.rate;
     unroll<n>([&](auto j) __attribute__((always_inline)) {
       if constexpr (System::joined[i][j]) r.acceleration[j] = r.acceleration[j] - geometry.lever[i][j] * f.force;
     });

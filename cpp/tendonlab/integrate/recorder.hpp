@@ -15,7 +15,7 @@ class Recorder {
   /// Samples of the outputs go into `value_rows`, derivatives into `columns` columns of the trajectory's gradient from
   /// the first on.
   Recorder(const System& of, const Experiment& with, Trajectory& into, Trajectory::Rows value_rows, int first_column,
-           int columns, bool with_ports)
+           int columns, const PortRows& of_ports)
       : system(of),
         experiment(with),
         time(with.time),
@@ -23,7 +23,7 @@ class Recorder {
         rows(std::move(value_rows)),
         column(first_column),
         width(columns),
-        records_ports(with_ports) {
+        shown(of_ports) {
     for (std::size_t c = 0; c < channels; ++c) {
       if (!rows[c]) continue;
       wanted |= needs[c];
@@ -51,7 +51,7 @@ class Recorder {
         const auto seen = observe(system, instant, wanted);
         for (std::size_t c = 0; c < channels; ++c) write(c, next[0], seen[c]);
       }
-    if (!records_ports) return;
+    if (!shown.any()) return;
     for (; next_port < time.size() && time[next_port] <= reached; ++next_port) {  // ports have no sensors
       auto y = values(s).at((time[next_port] - over.start) * per_length);
       y.at.time = time[next_port];
@@ -73,16 +73,16 @@ class Recorder {
   void in_groups(const Step<Y>& s, const Interval& over, double reached, double ago, std::size_t& first,
                  Write&& write) {
     constexpr auto most = static_cast<std::ptrdiff_t>(Lanes::count);
-    const auto begin = time.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = std::upper_bound(begin, time.end(), reached, [&](double to, double t) { return to < t - ago; });
-    if (begin != end && *begin - ago < over.start) return;  // before the record all was as at its start
+    if (first < time.size() && time[first] - ago < over.start) return;  // before the record all was as at its start
     for (;;) {
       const auto from = time.begin() + static_cast<std::ptrdiff_t>(first);
-      const auto here = std::min(end - from, most);
-      if (here < fewest) return;
       const bool full = time.end() - from >= most;
+      std::ptrdiff_t here = full && from[most - 1] - ago <= reached ? most : 0;
+      if (here == 0)
+        while (from + here != time.end() && from[here] - ago <= reached) ++here;
+      if (here < fewest) return;
       const Lanes at =
-          (full ? Lanes(&*from) : by_lane([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; })) - ago;
+          (full ? Lanes(&*from) : by_lane<Lanes>([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; })) - ago;
       auto y = s.at(Lanes((at - over.start) * (1.0 / over.length)));
       y.at.time = at;
       write(y, first);
@@ -98,21 +98,23 @@ class Recorder {
   }
   template <class Frame, class Inputs>
   void write_groups(const Step<Y>& s, const Interval& over, double reached, const Frame& frame, const Inputs& in) {
+    together->begin(frame, in);
     if (!late)
       in_groups(s, over, reached, 0.0, next[0], [&](const auto& y, std::size_t first) {
-        const auto seen = together->outputs(y, frame, in, wanted);
+        const auto seen = together->outputs(y, wanted);
         for (std::size_t c = 0; c < channels; ++c)
           if (rows[c]) put(seen[c], rows[c], first);
       });
     for (std::size_t c = 0; late && c < channels; ++c)
       if (rows[c])
         in_groups(s, over, reached, delay[c], next[c], [&](const auto& y, std::size_t first) {
-          put(together->outputs(y, frame, in, needs[c])[c], rows[c], first);
+          put(together->outputs(y, needs[c])[c], rows[c], first);
         });
-    if (records_ports)
+    if (shown.any())
       in_groups(s, over, reached, 0.0, next_port, [&](const auto& y, std::size_t first) {
-        const auto of_ports = together->ports(y, frame, in);
-        for (std::size_t k = 0; k < of_ports.size(); ++k) put(of_ports[k], &out.port[k * time.size()], first);
+        together->ports(y, shown, [&](std::size_t port, int quantity, const Lanes& values) {
+          put(values, out.port_row(port, shown, quantity), first);
+        });
       });
   }
   template <class Inputs>
@@ -133,9 +135,10 @@ class Recorder {
   [[gnu::noinline]] void write_ports(std::size_t sample, Instant<Values, double, Inputs>& instant) {
     unroll<ports>([&](auto i) {
       const auto& port = instant.coupled().port[i];
-      const double row[4] = {port.velocity, port.position, port.load, instant.template force<i>()};
-      for (std::size_t k = 0; k < 4; ++k)
-        out.port[(static_cast<std::size_t>(i) * 4 + k) * time.size() + sample] = row[k];
+      const double row[PortRows::all] = {port.velocity, port.position, port.load,
+                                         shown.has(PortRows::force) ? instant.template force<i>() : 0.0};
+      for (int k = 0; k < PortRows::all; ++k)
+        if (shown.has(k)) out.port_row(static_cast<std::size_t>(i), shown, k)[sample] = row[k];
     });
   }
 
@@ -145,7 +148,7 @@ class Recorder {
   Trajectory& out;
   const Trajectory::Rows rows;
   const int column, width;
-  const bool records_ports;
+  const PortRows shown;  ///< of each port
   const std::array<Needs, channels> needs = needs_of_outputs<System, T>(system);
   Needs wanted;  ///< of the outputs that somebody wants
   bool late = false;

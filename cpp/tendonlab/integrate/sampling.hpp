@@ -41,7 +41,8 @@ class Sampling {
 
  public:
   /// Writes outputs, their derivatives in `columns` columns from the first, and what the ports saw.
-  Sampling(const System& of, const Experiment& experiment, Trajectory& into, int first_column, int columns, bool shows)
+  Sampling(const System& of, const Experiment& experiment, Trajectory& into, int first_column, int columns,
+           const PortRows& shown)
       : system(of), time(experiment.time), out(into), column(first_column), width(columns) {
     std::vector<std::array<T, channels>> all(time.size());
     SampleInputs<T> inputs(experiment);
@@ -50,7 +51,7 @@ class Sampling {
       inputs.move_to(k);
       const auto sample = system.evaluate(inputs, memory);
       all[k] = sample.output;
-      if (shows) write_ports(k, sample);
+      if (shown.any()) write_ports(k, sample, shown);
     }
     out.attempts = static_cast<long>(time.size());
     const auto rows = out.rows(~0u);
@@ -75,11 +76,13 @@ class Sampling {
     return all[i][c] + share * (all[i + 1][c] - all[i][c]);
   }
   template <class Shown>
-  void write_ports(std::size_t sample, const Shown& of) {
+  void write_ports(std::size_t sample, const Shown& of, const PortRows& shown) {
     for (std::size_t i = 0; i < ports; ++i) {
       const auto& port = of.port[i];
-      const double row[4] = {plain(port.velocity), plain(port.position), plain(port.load), plain(of.force[i])};
-      for (std::size_t k = 0; k < 4; ++k) out.port[(i * 4 + k) * time.size() + sample] = row[k];
+      const double row[PortRows::all] = {plain(port.velocity), plain(port.position), plain(port.load),
+                                         plain(of.force[i])};
+      for (int k = 0; k < PortRows::all; ++k)
+        if (shown.has(k)) out.port_row(i, shown, k)[sample] = row[k];
     }
   }
 

@@ -2,18 +2,24 @@
 // A measured or prescribed signal: a piecewise cubic in time (constant pieces where the hardware holds its value).
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "tendonlab/core/dual.hpp"
 
 namespace tendonlab::integrate {
+/// The index of a piece in each lane, and the instants that they were looked for.
+struct LanePieces : std::array<int, Lanes::count> {
+  Lanes found_at{std::numeric_limits<double>::quiet_NaN()};
+};
 /// The index of a piece, or one for each lane.
 template <class T>
-using PieceOf = std::conditional_t<in_lanes<T>, std::array<int, Lanes::count>, int>;
+using PieceOf = std::conditional_t<in_lanes<T>, LanePieces, int>;
 
 /// More than the rounding of an instant after a delay is added and taken off again.
-inline double rounding(double time) {
-  return 1e-15 * (1.0 + std::fabs(time));
+template <class S>
+S rounding(const S& time) {
+  return 1e-15 * (1.0 + abs(time));
 }
 
 struct Signal {
@@ -21,6 +27,7 @@ struct Signal {
   std::vector<std::array<double, 4>> coefficients;  ///< value, slope, half curvature, ... in time from the knot
   std::vector<double> before;                       ///< integral up to each knot
   double pieces_per_second = 0;                     ///< 0: pieces differ in length
+  double drift = 0;                                 ///< by which knots may lie beside that rhythm, in pieces
   bool holds = false;                               ///< pieces are constant: the stepper lands on their borders
   bool bends = false;                               ///< no value jumps, but the slope does from piece to piece
 
@@ -29,17 +36,28 @@ struct Signal {
 
   /// The piece that holds at `time`, looked for from `near`; the first and last pieces reach outwards.
   int locate(double time, int near) const {
-    int i = pieces_per_second > 0 ? guess(time) : near;
+    if (is_in(near, time)) return near;
+    int i = near;
+    if (pieces_per_second > 0) {
+      const double place = place_of(time);
+      i = static_cast<int>(place);
+      if (std::fabs(place - i - 0.5) < 0.5 - drift) return i;
+    }
     while (i + 1 < pieces() && start_of(i + 1) <= time) ++i;
     while (i > 0 && start_of(i) > time) --i;
     return i;
+  }
+  bool is_in(int piece, double time) const {
+    return start_of(piece) <= time && (piece + 1 == pieces() || time < start_of(piece + 1));
   }
   /// Moves `piece` to the one that holds at `time`; a held signal keeps it, as a mode of the step.
   void follow(double time, int& piece) const {
     if (!holds) piece = locate(reached(time), piece);
   }
-  void follow(const Lanes& time, PieceOf<Lanes>& piece) const {
-    if (holds) return;
+  void follow(const Lanes& time, LanePieces& piece) const {
+    if (holds || !any(time != piece.found_at)) return;  // value and slope are asked for at the same instants
+    piece.found_at = time;
+    if (pieces_per_second > 0 && guess(time + rounding(time), piece)) return;
     double each[Lanes::count];
     time.store(each);
     for (std::size_t l = 0; l < piece.size(); ++l) piece[l] = locate(reached(each[l]), piece[l]);
@@ -133,9 +151,19 @@ struct Signal {
     if constexpr (order == 0) return c0 + x * (c1 + x * (c2 + x * c3));
     return gathered(piece) + x * (c0 + x * (c1 / 2.0 + x * (c2 / 3.0 + x * (c3 / 4.0))));
   }
-  int guess(double time) const {
-    const double pieces_before = (time - knots.front()) * pieces_per_second, last = pieces() - 1;
-    return static_cast<int>(std::max(0.0, std::min(pieces_before, last)));
+  /// How many pieces of the mean length have begun by `time`, from 0 on.
+  template <class S>
+  TENDONLAB_INLINE S place_of(const S& time) const {
+    const S begun = (time - knots.front()) * pieces_per_second;
+    const S from_first = select(begun > 0.0, begun, S(0.0));
+    return select(from_first < pieces() - 1.0, from_first, S(pieces() - 1.0));
+  }
+  /// Finds the pieces of all lanes; false where one is too near to a knot to tell.
+  TENDONLAB_INLINE bool guess(const Lanes& time, LanePieces& piece) const {
+    const Lanes place = place_of(time);
+    for (int l = 0; l < Lanes::count; ++l) piece[static_cast<std::size_t>(l)] = static_cast<int>(place[l]);
+    const Lanes off = place - in_each(piece, [](int i) { return i + 0.5; });
+    return !any(abs(off) >= 0.5 - drift);
   }
   /// Joins held pieces of equal value, so that the stepper lands where something happens and nowhere else.
   void join() {
@@ -160,9 +188,12 @@ struct Signal {
     pieces_per_second = 0;
     if (pieces() < 3) return;
     const double length = (knots.back() - knots.front()) / (pieces() - 1);
+    double most = 0;
     for (std::size_t i = 1; i < knots.size(); ++i)
-      if (std::fabs(knots[i] - knots[i - 1] - length) > 1e-3 * length) return;
+      most = std::max(most, std::fabs(knots[i] - knots.front() - static_cast<double>(i) * length));
+    if (most > 0.1 * length) return;
     pieces_per_second = 1.0 / length;
+    drift = most / length + 1e-9;
   }
   void find_bends() {
     const auto is_straight = [](const auto& c) { return c[2] == 0.0 && c[3] == 0.0; };
@@ -178,7 +209,7 @@ struct Signal {
   }
   template <class F>
   static TENDONLAB_INLINE Lanes in_each(const PieceOf<Lanes>& piece, F f) {
-    return by_lane([&](int l) __attribute__((always_inline)) { return f(piece[static_cast<std::size_t>(l)]); });
+    return by_lane<Lanes>([&](int l) __attribute__((always_inline)) { return f(piece[static_cast<std::size_t>(l)]); });
   }
 };
 }  // namespace tendonlab::integrate

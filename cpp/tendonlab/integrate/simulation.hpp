@@ -4,6 +4,7 @@
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/integrate/contact.hpp"
 #include "tendonlab/integrate/drive.hpp"
+#include "tendonlab/integrate/growth.hpp"
 #include "tendonlab/integrate/saltation.hpp"
 #include "tendonlab/integrate/stiffness.hpp"
 
@@ -94,25 +95,70 @@ class Simulation {
     next.lands = next.length > (retakes ? reach : 0.95 * reach);
     if (next.lands) next.length = reach;
     if (pausing > 0 && !retakes) pause_at_knot(next);
-    next.explicitly = next.length < h && next.length <= explicit_reach && next.length <= stable_reach();
+    const bool is_last = next.lands && end <= kink;  // once: not worth finding out whether it would be stable
+    next.explicitly = next.length < h && !is_last && next.length <= explicit_reach && next.length <= stable_reach();
     return next;
   }
   /// Accepts the step or not, and passes the event or the jump of the inputs that it ends on.
   template <class Record>
   void take(const Attempt& tried, const Step<Y>& step, Trajectory& trajectory, Record&& record) {
-    const double length = tried.length, wish = tried.explicitly ? growth<Kutta>(step) : growth<Tableau>(step);
+    const double wish = tried.explicitly ? growth<Kutta>(step) : growth<Tableau>(step);
+    if (wish > 0)
+      accept(tried, step, wish, earliest_crossing(values(step)), trajectory, record);
+    else
+      reject(tried, wish, trajectory);
+  }
+  /// The same for a caller that has judged the step: `wish` as `growth_after` has it; `crosses`: a guard may have been
+  /// passed. `step()` gives the step.
+  template <class GetStep, class Record>
+  void take_judged(const Attempt& tried, double wish, bool crosses, GetStep&& step, Trajectory& trajectory,
+                   Record&& record) {
+    if (!(wish > 0)) return reject(tried, wish, trajectory);
+    const Step<Y> s = step();
+    accept(tried, s, wish, crosses || plain_frame.holds ? earliest_crossing(values(s)) : Crossing{}, trajectory, record);
+  }
+  const Frame<Values, double>& modes_now() const { return plain_frame; }
+  const Drive<T>& inputs() const { return drive; }
+  /// The friction level that the memory of each slot replaces.
+  const double (&memory_levels() const)[slots<System>] { return memory_level; }
+  static constexpr double on_guard = 1e-13;  ///< up to here beyond its guard a mode holds
+
+ private:
+  struct Crossing {
+    int mode = -1;
+    double share = 2;
+    double toward = 0;   ///< which way a gap is crossed
+    bool stale = false;  ///< the step began on its guard, in a mode that does not hold
+    bool past = false;   ///< it began beyond its guard, by more than rounding
+  };
+  static constexpr double past_guard = 1e-14;
+  static constexpr double RETRY = 1.03;         ///< growth of the reach of explicit steps while none is taken
+  static constexpr double stable = 2.5;         ///< rate times length up to which an explicit step damps (2.8 at most)
+  static constexpr int STABLE_FOR = 64;         ///< explicit steps without events until stability is looked at again,
+  static constexpr int STABLE_WITH_MEMORY = 3;  ///< with a memory, which settles faster the faster it slides
+  /// Steps that end on knots after one that passed a knot has failed: twice as many each time, until one succeeds.
+  static constexpr int FEWEST_PAUSES = 16, MOST_PAUSES = 1024;
+
+  template <class Method>
+  double growth(const Step<Y>& step) const {
+    return growth_after<Method>(mean_square_error<Method, System, T>(system, settings, y, step, memory_level));
+  }
+  void reject(const Attempt& tried, double wish, Trajectory& trajectory) {
+    ++trajectory.rejected;
+    const double length = tried.length, shorter = length * std::max(0.15, -wish);
+    const double knot = drive.next_knot(t + resolved()) - t;
+    if (length > knot && shorter < knot) pausing = patience, patience = std::min(2 * patience, MOST_PAUSES);
+    if (tried.explicitly)
+      explicit_reach = shorter;
+    else
+      explicit_reach *= RETRY, shrink(shorter);
+  }
+  /// The error allows the step; the first event in it, if there is one, may not.
+  template <class Record>
+  void accept(const Attempt& tried, const Step<Y>& step, double wish, const Crossing& first, Trajectory& trajectory,
+              Record&& record) {
+    const double length = tried.length;
     if (!tried.explicitly) explicit_reach *= RETRY;
-    if (!(wish > 0)) {  // rejected
-      ++trajectory.rejected;
-      const double shorter = length * std::max(0.15, -wish), knot = drive.next_knot(t + resolved()) - t;
-      if (length > knot && shorter < knot) pausing = patience, patience = std::min(2 * patience, MOST_PAUSES);
-      if (tried.explicitly)
-        explicit_reach = shorter;
-      else
-        shrink(shorter);
-      return;
-    }
-    const Crossing first = earliest_crossing(values(step));
     if (first.stale || (first.mode >= 0 && first.share < 0.97))  // dense output is less accurate inside a step
       return aim(first, length, trajectory);
     retakes = false;
@@ -136,24 +182,6 @@ class Simulation {
     if (first.mode < 0 && t >= kink) pass_kink();
     arrive();
   }
-  const Frame<Values, double>& modes_now() const { return plain_frame; }
-  const Drive<T>& inputs() const { return drive; }
-
- private:
-  struct Crossing {
-    int mode = -1;
-    double share = 2;
-    double toward = 0;   ///< which way a gap is crossed
-    bool stale = false;  ///< the step began on its guard, in a mode that does not hold
-    bool past = false;   ///< it began beyond its guard, by more than rounding
-  };
-  static constexpr double on_guard = 1e-13, past_guard = 1e-14;
-  static constexpr double RETRY = 1.03;         ///< growth of the reach of explicit steps while none is taken
-  static constexpr double stable = 2.5;         ///< rate times length up to which an explicit step damps (2.8 at most)
-  static constexpr int STABLE_FOR = 64;         ///< explicit steps without events until stability is looked at again,
-  static constexpr int STABLE_WITH_MEMORY = 3;  ///< with a memory, which settles faster the faster it slides
-  /// Steps that end on knots after one that passed a knot has failed: twice as many each time, until one succeeds.
-  static constexpr int FEWEST_PAUSES = 16, MOST_PAUSES = 1024;
 
   /// The shortest time that counts.
   double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
@@ -188,43 +216,6 @@ class Simulation {
     }
     return longest_stable;
   }
-  template <int degree>
-  static double root_of(double x) {
-    if constexpr (degree % 2 == 0 && degree > 2)
-      return root_of<degree / 2>(std::sqrt(x));
-    else
-      return degree == 2 ? std::sqrt(x) : std::pow(x, 1.0 / degree);
-  }
-  /// By how much the next step may grow (> 0), or minus the factor by which this one must shrink.
-  template <class Method>
-  double growth(const Step<Y>& s) const {
-    constexpr int judged = systems::stated<System>;
-    double sum = 0;
-    for (std::size_t j = 0; j < n; ++j) {
-      const auto one = [](const T& error, const T& from, const T& to, double scale) {
-        return square(plain(error) / (scale + std::max(std::fabs(plain(from)), std::fabs(plain(to)))));
-      };
-      sum += one(s.error.at.position[j], y.at.position[j], s.to.at.position[j], settings.position_scale);
-      if (j < judged)
-        sum += one(s.error.at.velocity[j], y.at.velocity[j], s.to.at.velocity[j], settings.velocity_scale);
-    }
-    int counted = n + judged;
-    unroll<slots<System>>([&](auto i) {
-      if constexpr (SlotOf<System, i>::states > 0) {
-        const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
-        slot.template each<role::memory>([&](const auto& law) {
-          const double level = std::max(memory_level[i], 1e-300);
-          sum += square(plain(s.error.memory[memory_before<System, i>()]) / law.state_scale(level));
-          ++counted;
-        });
-      }
-    });
-    const double mean_square = sum * square(Method::error_weight / settings.tolerance) / counted;
-    if (!(mean_square < 1e300)) return -0.15;
-    const double factor = 0.9 / root_of<2 * (Method::error_order + 1)>(std::max(mean_square, 1e-12));
-    return mean_square <= 1.0 ? std::min(6.0, factor) : -factor;
-  }
-
   /// Chooses what sticks, as `Sticking::settle` does, and fits the projection to the choice.
   void settle(const std::array<bool, num_modes>& turning) {
     plain_contact.settle(values(y), plain_frame, turning, drive);

@@ -5,7 +5,7 @@
 
 namespace tendonlab::integrate {
 template <class Y>
-void add(Y& y, double s, const Y& k) {
+TENDONLAB_INLINE void add(Y& y, double s, const Y& k) {
   for (std::size_t j = 0; j < y.at.position.size(); ++j) {
     y.at.position[j] = y.at.position[j] + s * k.at.position[j];
     y.at.velocity[j] = y.at.velocity[j] + s * k.at.velocity[j];
@@ -60,33 +60,47 @@ struct Interval {
   double start, length, taken;
 };
 
-/// The increment of stage `i`: (alpha - J) k_i = f(Y_i) + sum C_ij k_j / h + h d_i f_t.
-template <class Tableau, class System, class T, class Y, class Inputs>
-TENDONLAB_INLINE Y stage(int i, const System& system, const Y& y, const Frame<System, T>& frame, const Inputs& in,
-                         Plain<T> h, const Arrowhead<System, T>& blocks, const Elimination<System, T>& solver,
-                         const Y* k) {
+/// Is row i of A the row before and the whole of the increment before?
+template <class Tableau, int i>
+constexpr bool continues() {
+  if (i == 0) return false;
+  for (int j = 0; j < i - 1; ++j)
+    if (Tableau::A[i][j] != Tableau::A[i - 1][j]) return false;
+  return Tableau::A[i][i - 1] == 1.0;
+}
+
+/// The increment of stage `i`: (alpha - J) k_i = f(Y_i) + sum C_ij k_j / h + h d_i f_t. `at`: Y of the stage before,
+/// then of this one.
+template <class Tableau, int i, class System, class T, class Y, class Inputs>
+TENDONLAB_INLINE void stage(const System& system, const Y& y, const Frame<System, T>& frame, const Inputs& in,
+                            Plain<T> h, Plain<T> per_h, const Arrowhead<System, T>& blocks,
+                            const Elimination<System, T>& solver, Y& at, Y (&k)[Tableau::stages]) {
   constexpr int n = System::dof, nz = memories<System>;
-  Y at = y, r{};
-  for (int j = 0; j < i; ++j) {
-    add(at, Tableau::A[i][j], k[j]);
+  Y r{};
+  if constexpr (continues<Tableau, i>())
+    add(at, 1.0, k[i - 1]);
+  else
+    at = y;
+  unroll<i>([&](auto j) TENDONLAB_ALWAYS {
+    if constexpr (!continues<Tableau, i>()) add(at, Tableau::A[i][j], k[j]);
     add(r, Tableau::C[i][j], k[j]);
-  }
+  });
   Rate<T, n, nz> f = blocks.rate;
-  if (i > 0) {
+  if constexpr (i > 0) {
     at.at.time = y.at.time + Tableau::c[i] * h;
     f = rate_for_step(system, at, frame, in);
   }
-  const Plain<T> per_h = 1.0 / h, drift = h * Tableau::d[i];
+  const Plain<T> drift = h * Tableau::d[i];
   for (std::size_t j = 0; j < n; ++j) {
     r.at.position[j] = r.at.position[j] * per_h + at.at.velocity[j];
     r.at.velocity[j] = r.at.velocity[j] * per_h + f.acceleration[j];
-    if (Tableau::d[i] != 0) r.at.velocity[j] = r.at.velocity[j] + drift * blocks.acceleration_by[j][2 * n];
+    if constexpr (Tableau::d[i] != 0) r.at.velocity[j] = r.at.velocity[j] + drift * blocks.acceleration_by[j][2 * n];
   }
   for (std::size_t m = 0; m < nz; ++m) {
     r.memory[m] = r.memory[m] * per_h + f.memory[m];
-    if (Tableau::d[i] != 0) r.memory[m] = r.memory[m] + drift * blocks.memory_by[m][2 * n];
+    if constexpr (Tableau::d[i] != 0) r.memory[m] = r.memory[m] + drift * blocks.memory_by[m][2 * n];
   }
-  return solver.solve(r);
+  k[i] = solver.solve(r);
 }
 
 template <class Tableau, class System, class T, class Inputs>
@@ -95,16 +109,19 @@ template <class Tableau, class System, class T, class Inputs>
   using Y = StateOf<System, T>;
   const auto blocks = linearise(system, y, frame, in);
   const Elimination<System, T> solver(blocks, h, Tableau::gamma);
-  Y k[Tableau::stages];
-  for (int i = 0; i < Tableau::stages; ++i) k[i] = stage<Tableau>(i, system, y, frame, in, h, blocks, solver, k);
-  // Stiffly accurate: the last row of A, then the error.
-  Step<Y> s{y, y, {}, {}, {}, k[Tableau::stages - 1]};
-  for (int j = 0; j < Tableau::stages; ++j) {
-    add(s.to, j < Tableau::stages - 1 ? Tableau::A[Tableau::stages - 1][j] : 1.0, k[j]);
+  const Plain<T> per_h = 1.0 / h;
+  Y k[Tableau::stages], at = y;
+  unroll<Tableau::stages>([&](auto i) TENDONLAB_ALWAYS {
+    stage<Tableau, i>(system, y, frame, in, h, per_h, blocks, solver, at, k);
+  });
+  // Stiffly accurate: the last stage and its increment, which is the error.
+  add(at, 1.0, k[Tableau::stages - 1]);
+  Step<Y> s{y, at, {}, {}, {}, k[Tableau::stages - 1]};
+  unroll<Tableau::stages>([&](auto j) TENDONLAB_ALWAYS {
     add(s.first, Tableau::D[0][j], k[j]);
     add(s.second, Tableau::D[1][j], k[j]);
     add(s.third, Tableau::D[2][j], k[j]);
-  }
+  });
   s.to.at.time = y.at.time + h;
   return s;
 }

@@ -4,18 +4,6 @@
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::systems {
-/// The first port of the element of port i: its slot speaks for the others.
-template <class System>
-constexpr std::size_t first_port(std::size_t i) {
-  std::size_t first = 0;
-  while (System::ports[first].element != System::ports[i].element) ++first;
-  return first;
-}
-template <class Law, class = void>
-inline constexpr bool asks_if_mirrored = false;
-template <class Law>
-inline constexpr bool asks_if_mirrored<Law, std::void_t<decltype(&Law::mirrored)>> = true;
-
 /// Gives every port of an element the laws of its first; they learn whether their port is mirrored.
 template <class System, std::size_t... i>
 void share_slots(System& system, std::index_sequence<i...>) {

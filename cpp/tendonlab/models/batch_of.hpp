@@ -25,7 +25,7 @@ class BatchOf {
 
  public:
   BatchOf(const Description& of, const integrate::Experiment& of_all, const integrate::Settings& with, PointSink& into)
-      : described(of), experiment(of_all), settings(with), sink(into), lockstep(of_all) {}
+      : described(of), experiment(of_all), settings(with), sink(into), lockstep(of_all, with) {}
 
   void run(const Points& points, const std::vector<std::size_t>& which) {
     std::size_t next = 0;
@@ -51,7 +51,7 @@ class BatchOf {
       std::copy_n(position, described.info.dof, own.simulation->y.at.position.begin());
       std::copy_n(velocity, described.info.dof, own.simulation->y.at.velocity.begin());
       subtract_biases(own.system, experiment, own.simulation->y.at);
-      own.recorder.emplace(own.system, experiment, own.out, sink.rows(point), 0, 0, false);
+      own.recorder.emplace(own.system, experiment, own.out, sink.rows(point), 0, 0, integrate::PortRows{});
       own.alike = assemble_alike<Of>(described, own.with);
       own.recorder->write_together(own.alike);
       if (own.simulation->inputs().remembers) {  // its loop reads the past, which lanes do not keep
@@ -81,11 +81,11 @@ class BatchOf {
     Running running{};
     Plans plan;
     if (!plan_all(running, plan)) return false;
-    lockstep.attempt(running, system_in_lanes(), plan, [&](std::size_t l, const auto& step) {
+    lockstep.attempt(running, system_in_lanes(), plan, [&](std::size_t l, double wish, bool crosses, auto&& step) {
       Lane& own = lane[l];
       own.planned.reset();
       guarded(own, [&] {
-        own.simulation->take(plan[l], step, own.out, *own.recorder);
+        own.simulation->take_judged(plan[l], wish, crosses, step, own.out, *own.recorder);
         if (own.simulation->done()) finish(own, {});
       });
     });

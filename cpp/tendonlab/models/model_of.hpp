@@ -34,7 +34,8 @@ class ModelOf final : public Model {
     const auto cells = static_cast<std::size_t>(out.channels) * experiment.time.size();
     out.value.assign(cells, 0.0);
     out.gradient.assign(cells * seeds.size(), 0.0);
-    if (settings.ports) out.port.assign(Of<double>::ports.size() * 4 * experiment.time.size(), 0.0);
+    if (settings.ports.any())
+      out.port.assign(Of<double>::ports.size() * settings.ports.count() * experiment.time.size(), 0.0);
     if (seeds.empty()) systems::run<Of, double>({{description, with, seeds, 0, 0}, experiment, settings, out});
     static_assert(integrate::seeds_at_once == Gradient::width);
     for (std::size_t first = 0; first < seeds.size(); first += integrate::seeds_at_once) {

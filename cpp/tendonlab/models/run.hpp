@@ -33,7 +33,8 @@ struct Job : Assembly {
   const integrate::Settings& settings;
   integrate::Trajectory& out;
 
-  bool shows_ports() const { return settings.ports && first == 0; }
+  /// Ports are recorded once, with the first seeds.
+  integrate::PortRows ports() const { return first == 0 ? settings.ports : integrate::PortRows{}; }
 };
 
 /// Hands out the numbers of a system, field by field. A call for each, rather than a copy of this code for each.
@@ -102,7 +103,7 @@ void step_through(const Of<T>& system, const Of<double>& plain, const Job& job) 
   std::copy(velocity.begin(), velocity.end(), simulation.y.at.velocity.begin());
   subtract_biases(system, experiment, simulation.y.at);
   integrate::Recorder<Of, T> recorder(system, experiment, job.out, job.out.rows(job.settings.outputs),
-                                      static_cast<int>(job.first), static_cast<int>(job.count), job.shows_ports());
+                                      static_cast<int>(job.first), static_cast<int>(job.count), job.ports());
   std::optional<Of<Lanes>> alike;
   if constexpr (std::is_same_v<T, double>) {
     alike = assemble_alike<Of>(job.described, job.with);
@@ -117,7 +118,7 @@ void run(const Job& job) {
   const System system = assemble<System, T>(job);
   if constexpr (System::sampled)
     integrate::Sampling<System, T>(system, job.experiment, job.out, static_cast<int>(job.first),
-                                   static_cast<int>(job.count), job.shows_ports());
+                                   static_cast<int>(job.count), job.ports());
   else if constexpr (std::is_same_v<T, double>)
     step_through<Of, T>(system, system, job);
   else

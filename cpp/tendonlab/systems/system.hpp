@@ -148,6 +148,13 @@ constexpr bool drives_a_port() {
     if (port.driven || port.direction_while_driven >= 0) return true;
   return false;
 }
+/// The first port of the element of port i: its slot speaks for the others.
+template <class System>
+constexpr std::size_t first_port(std::size_t i) {
+  std::size_t first = 0;
+  while (System::ports[first].element != System::ports[i].element) ++first;
+  return first;
+}
 /// Is the input given that drives ports which without it move freely?
 template <class System, class Inputs>
 bool is_driven(const Inputs& in) {

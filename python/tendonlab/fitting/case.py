@@ -15,6 +15,7 @@ from tendonlab.errors import NumericalError
 from tendonlab.fitting.noise import blocks_of, sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
+from tendonlab.simulation.catalog import PORT_QUANTITIES
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
 from tendonlab.simulation.system import System, require_system
 
@@ -158,7 +159,7 @@ class Case:
             position_scale=min(e.position_scale for e in self.prepared),
             velocity_scale=min(e.velocity_scale for e in self.prepared),
             max_attempts=max(usual, STIFFER * self.num_attempts),
-            ports=ports,
+            ports=PORT_QUANTITIES if ports else (),
         )
 
     @cached_property

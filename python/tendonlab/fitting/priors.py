@@ -13,7 +13,7 @@ from tendonlab import _core
 from tendonlab._core import Free
 from tendonlab.data import NominalParameter
 from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import DIMENSIONS, ParameterInfo
+from tendonlab.simulation.catalog import DIMENSIONS, PORT_QUANTITIES, ParameterInfo
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
@@ -41,7 +41,9 @@ def scales(system: System, experiments: Sequence[Prepared]) -> dict[str, Scale]:
     """Scale of every element, from replays of the nominal simulator; a sensor's is its own signal's sd."""
     info = system.info
     settings = [
-        _core.Settings(tolerance=1e-4, position_scale=e.position_scale, velocity_scale=e.velocity_scale, ports=True)
+        _core.Settings(
+            tolerance=1e-4, position_scale=e.position_scale, velocity_scale=e.velocity_scale, ports=PORT_QUANTITIES
+        )
         for e in experiments
     ]
     runs = [

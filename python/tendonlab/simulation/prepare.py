@@ -18,7 +18,7 @@ from tendonlab.simulation.signals import averaged, hold, linear, scales_of, smoo
 from tendonlab.simulation.start import Start, start_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from tendonlab.simulation.catalog import InputInfo
     from tendonlab.simulation.records import Controller
@@ -85,14 +85,18 @@ class Prepared:
         start = {"position": self.core.position, "velocity": self.core.velocity}
         return np.array([start[of][axis] for of, axis in self.initial])
 
-    def settings(self, tolerance: float, *, ports: bool = False) -> _core.Settings:
-        """How the core is to step at a relative error `tolerance` per step."""
+    def settings(
+        self, tolerance: float, *, ports: Sequence[str] = (), outputs: Sequence[int] | None = None
+    ) -> _core.Settings:
+        """How the core is to step at a relative error `tolerance` per step, and what it is to record: quantities of
+        ports, and the outputs of these indices (default: all)."""
         return _core.Settings(
             tolerance=within("tolerance", tolerance, 1e-14, 0.1),
             position_scale=self.position_scale,
             velocity_scale=self.velocity_scale,
             max_attempts=MAX_ATTEMPTS + ATTEMPTS_PER_SAMPLE * self.measured.shape[1],
-            ports=ports,
+            ports=list(ports),
+            outputs=None if outputs is None else list(outputs),
         )
 
 

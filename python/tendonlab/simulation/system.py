@@ -13,7 +13,15 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.arguments import choice, interval_text, within
 from tendonlab.errors import ParameterError, expected_one_of
-from tendonlab.simulation.catalog import AXES, LEVEL, MEMORY, SystemInfo, parameter_unit, system_info
+from tendonlab.simulation.catalog import (
+    AXES,
+    LEVEL,
+    MEMORY,
+    PORT_QUANTITIES,
+    SystemInfo,
+    parameter_unit,
+    system_info,
+)
 from tendonlab.simulation.frozen import FrozenNumbers
 from tendonlab.simulation.records import Controller
 
@@ -140,7 +148,7 @@ class System:
         record = as_experiment(experiment)
         system = self.under(record)
         ready = prepare(record, system, choose_loop(record, self.controller, replay))
-        settings = ready.settings(tolerance, ports=ports)
+        settings = ready.settings(tolerance, ports=PORT_QUANTITIES if ports else ())
         run = _core.simulate(self.kind, system.values(), system.active(), ready.core, [], settings)
         return trajectory_of(run, self.info, axis=self.axis, time=record.time)
 

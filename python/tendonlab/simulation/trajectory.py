@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tendonlab.errors import ParameterError, expected_one_of
-from tendonlab.simulation.catalog import SystemInfo, unit
+from tendonlab.simulation.catalog import PORT_QUANTITIES, SystemInfo, unit
 from tendonlab.simulation.equality import EqualByFields
 
 if TYPE_CHECKING:
@@ -90,6 +90,6 @@ def _columns(info: SystemInfo) -> pd.Index[str]:
 def _port_frame(ports: np.ndarray, info: SystemInfo, index: pd.Index[float]) -> pd.DataFrame:
     import pandas as pd
 
-    quantities = [[p.name for p in info.ports], ("velocity", "position", "load", "force")]
+    quantities = [[p.name for p in info.ports], PORT_QUANTITIES]
     columns = pd.MultiIndex.from_product(quantities, names=["port", "quantity"])
     return pd.DataFrame(ports.reshape(-1, ports.shape[-1]).T, index=index, columns=columns)

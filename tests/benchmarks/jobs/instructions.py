@@ -54,7 +54,7 @@ def _single(problem: Problem, runs: int, rounds: int) -> tuple[str, ...]:
     system = problem.system
     given = (system.kind, system.values(), system.active(), problem.core_experiment())
     steps = _core.simulate(*given, [], _core.Settings(tolerance=TOLERANCE))["attempts"]
-    options = {"tolerance": TOLERANCE, "ports": problem.reads_ports}
+    options = {"tolerance": TOLERANCE, "ports": problem.ports, "outputs": problem.reads}
     count = _counted(SINGLE, (*given, options), (1, runs + 1)) / runs
     seconds = alternate([core_call(problem, TOLERANCE)], rounds=rounds)[0]
     thousand, per_ns = f"{count / 1e3:.0f} thousand", f"{count / seconds / 1e9:.1f}"
