@@ -1,4 +1,5 @@
 #include "tendonlab/bindings/bind.hpp"
+#include "tendonlab/bindings/processor.hpp"
 #include "tendonlab/core/error.hpp"
 
 namespace tendonlab::bindings {
@@ -11,12 +12,9 @@ Array to_array(std::vector<double> values, std::vector<py::ssize_t> shape) {
 
 PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
-#ifdef TENDONLAB_NEEDS_AVX2
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-    throw py::import_error(
-        "this build of tendonlab needs a processor with AVX2; build it with -C "
-        "cmake.define.TENDONLAB_PROCESSOR=x86-64");
-#endif
+  if (const char* lacking = tendonlab::bindings::lacking_instructions())
+    throw py::import_error(std::string("this build of tendonlab needs a processor with ") + lacking +
+                           "; build it with -C cmake.define.TENDONLAB_PROCESSOR=x86-64");
   module.doc() = "The compiled core of tendonlab: laws, systems, simulation, identification.";
   // The Python package owns the error types; the core only raises them.
   py::register_exception_translator([](std::exception_ptr thrown) {

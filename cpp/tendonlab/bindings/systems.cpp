@@ -70,6 +70,10 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
   const Model& of = model(kind);
   const Configuration configuration = make_configuration(of, values, active);
   const auto wanted = make_seeds(seeds);
+  const std::size_t channels = of.info().outputs.size();
+  if (settings.outputs != ~0u && settings.outputs >> channels != 0)
+    throw ParameterError(
+        sentence("outputs: ", 31 - __builtin_clz(settings.outputs), ": ", kind, " has ", channels, " outputs"));
   integrate::Trajectory run;
   {
     py::gil_scoped_release release;
@@ -102,7 +106,7 @@ std::uint32_t bits_of(const std::optional<std::vector<unsigned>>& outputs) {
   if (!outputs) return ~0u;
   std::uint32_t bits = 0;
   for (const unsigned c : *outputs) {
-    if (c >= 32) throw ParameterError(sentence("outputs: ", c, ": expected the index of an output"));
+    if (c >= 31) throw ParameterError(sentence("outputs: ", c, ": expected the index of an output"));
     bits |= 1u << c;
   }
   return bits;
@@ -187,8 +191,8 @@ void bind_experiments(py::module_& module) {
              require_within("tolerance", tolerance, 1e-14, 0.1);
              require_within("position_scale", position_scale, 1e-300, 1e300);
              require_within("velocity_scale", velocity_scale, 1e-300, 1e300);
-             return integrate::Settings{tolerance,         position_scale, velocity_scale, max_attempts,
-                                        rows_named(ports), bits_of(outputs)};
+             return integrate::Settings{tolerance,    position_scale,    velocity_scale,
+                                        max_attempts, rows_named(ports), bits_of(outputs)};
            }),
            py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,
            py::arg("velocity_scale") = 1e-2, py::arg("max_attempts") = 20'000'000L,
@@ -211,7 +215,8 @@ void bind_systems(py::module_& module) {
   bind_experiments(module);
   module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
              py::arg("seeds"), py::arg("settings"),
-             "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, wanted quantities, samples).");
+             "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, wanted quantities, "
+             "samples).");
   module.def(
       "balance", &balance, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
       py::arg("position"), py::arg("velocity"),

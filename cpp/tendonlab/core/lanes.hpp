@@ -105,8 +105,7 @@ TENDONLAB_INLINE PackMask<size> operator|(const PackMask<size>& a, const PackMas
 template <int size>
 TENDONLAB_INLINE unsigned bits_of(const PackMask<size>& m) {
   unsigned bits = 0;
-  for (int i = 0; i < PackMask<size>::words; ++i)
-    bits |= sign_bits(m.word[i]) << (i * PackMask<size>::word_size);
+  for (int i = 0; i < PackMask<size>::words; ++i) bits |= sign_bits(m.word[i]) << (i * PackMask<size>::word_size);
   return bits;
 }
 TENDONLAB_PACK(Pack) select(const PackMask<size>& m, const Pack<size>& a, const Pack<size>& b) {

@@ -163,8 +163,15 @@ struct Slot {
 
  private:
   template <class Port, class S = typename Port::Scalar>
-  TENDONLAB_INLINE Response<S> respond_at(Port at, const S& z) const {
-    at = moved(at);
+  TENDONLAB_INLINE Response<S> respond_at(const Port& seen, const S& z) const {
+    if constexpr (count<role::motion>() == 0)
+      return respond_behind(seen, z);
+    else
+      return respond_behind(moved(seen), z);
+  }
+  /// To a motion behind the laws that change it.
+  template <class Port, class S = typename Port::Scalar>
+  TENDONLAB_INLINE Response<S> respond_behind(const Port& at, const S& z) const {
     const S dry = dry_level(at);
     Response<S> out;
     each<role::force>([&](const auto& law) { out.force = out.force + law.force(at); });

@@ -18,7 +18,8 @@ class LaneReadings : public Readings<Lanes> {
   /// Lane l reads as `one(l)` does now.
   template <class One>
   void follow_each(One one) {
-    const auto numbers = [&](auto field) TENDONLAB_ALWAYS { return by_lane<Lanes>([&](int l) { return one(l).*field; }); };
+    const auto numbers = [&](auto field)
+                             TENDONLAB_ALWAYS { return by_lane<Lanes>([&](int l) { return one(l).*field; }); };
     const auto pieces = [&](auto field) {
       PieceOf<Lanes> all;
       for (std::size_t l = 0; l < all.size(); ++l) all[l] = field(one(static_cast<int>(l)));

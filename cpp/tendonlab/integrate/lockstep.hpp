@@ -31,8 +31,8 @@ class Lockstep {
     const auto mean_square = [&](auto method) {
       return mean_square_error<decltype(method), System, Lanes>(system, settings, y, step, memory_level);
     };
-    const Lanes wish = explicitly ? growth_after<Kutta>(mean_square(Kutta{}))
-                                  : growth_after<Tableau>(mean_square(Tableau{}));
+    const Lanes wish =
+        explicitly ? growth_after<Kutta>(mean_square(Kutta{})) : growth_after<Tableau>(mean_square(Tableau{}));
     double wishes[count];
     wish.store(wishes);
     const unsigned crossing = crossings(system, step.to);
@@ -60,8 +60,9 @@ class Lockstep {
       one[l] = all[from], by[l] = plans[from].length;
       frame.holds = frame.holds || one[l]->modes_now().holds;
     }
-    const auto numbers = [&](auto of)
-                             TENDONLAB_ALWAYS { return by_lane<Lanes>([&](int l) TENDONLAB_ALWAYS { return of(*one[l]); }); };
+    const auto numbers = [&](auto of) TENDONLAB_ALWAYS {
+      return by_lane<Lanes>([&](int l) TENDONLAB_ALWAYS { return of(*one[l]); });
+    };
     length = Lanes(by);
     for (std::size_t j = 0; j < n; ++j) {
       y.at.position[j] = numbers([&](const One& s) { return s.y.at.position[j]; });

@@ -93,7 +93,7 @@ TENDONLAB_INLINE const auto& geometry_of(const System& system, const Coupled& co
     return system;
 }
 
-/// Whether a step is one piece of code with its laws: faster for plain numbers in a system of few slots. Elsewhere
+/// Whether the rate is one piece of code with its laws: faster for plain numbers in a system of few slots. Elsewhere
 /// calls cost nothing against the work, and one copy of each law stays in the cache.
 template <class System, class T>
 inline constexpr bool inlines_laws = (std::is_same_v<T, double> || in_lanes<T>)&&(slots<System> < 5);
@@ -136,8 +136,8 @@ constexpr int alike() {
   } else {
     constexpr auto first = static_cast<int>(systems::first_port<System>(i));
     int run = 0;
-    while (first + run < slots<System> && System::ports[static_cast<std::size_t>(first + run)].element ==
-                                              System::ports[first].element)
+    while (first + run < slots<System> &&
+           System::ports[static_cast<std::size_t>(first + run)].element == System::ports[first].element)
       ++run;
     const int all = run / most * most + (run % most >= fewest ? run % most : 0), place = i - first;
     if (place >= all) return 1;
@@ -162,9 +162,8 @@ TENDONLAB_INLINE Sliding<P> side_by_side(const Port* port) {
 /// The memories of several ports, side by side.
 template <class P, int count, class Memory>
 TENDONLAB_INLINE P memories_side_by_side(const Memory& memory, int first) {
-  return by_lane<P>([&](int l) TENDONLAB_ALWAYS {
-    return memory[static_cast<std::size_t>(first + (l < count ? l : count - 1))];
-  });
+  return by_lane<P>(
+      [&](int l) TENDONLAB_ALWAYS { return memory[static_cast<std::size_t>(first + (l < count ? l : count - 1))]; });
 }
 
 template <class Slot, int count, class Port, class Memory>
@@ -196,9 +195,10 @@ TENDONLAB_INLINE void each_response(const System& system, const Coupled& c, cons
   });
 }
 
+/// Called, not inlined: a step with a copy of all laws in each stage is no faster and compiles three times as long.
 template <class System, class T, class Inputs>
-TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
-                                   const Inputs& in) {
+[[gnu::noinline, gnu::flatten]] auto rate(const System& system, const StateOf<System, T>& y,
+                                          const Frame<System, T>& frame, const Inputs& in) {
   constexpr int n = System::dof;
   constexpr bool inlines = inlines_laws<System, T>;
   const auto c = couple_for_step<inlines>(system, y.at, frame.mode, in);
@@ -214,19 +214,5 @@ TENDONLAB_INLINE auto inlined_rate(const System& system, const StateOf<System, T
   for (std::size_t j = 0; j < n; ++j) r.acceleration[j] = r.acceleration[j] * geometry.inverse_inertia[j];
   if (frame.holds) frame.project([&](int j) -> T& { return r.acceleration[static_cast<std::size_t>(j)]; });
   return r;
-}
-template <class System, class T, class Inputs>
-[[gnu::noinline, gnu::flatten]] auto rate(const System& system, const StateOf<System, T>& y,
-                                          const Frame<System, T>& frame, const Inputs& in) {
-  return inlined_rate(system, y, frame, in);
-}
-/// The rate within a step, inlined or called as `inlines_laws` says.
-template <class System, class T, class Inputs>
-TENDONLAB_INLINE auto rate_for_step(const System& system, const StateOf<System, T>& y, const Frame<System, T>& frame,
-                                    const Inputs& in) {
-  if constexpr (inlines_laws<System, T>)
-    return inlined_rate(system, y, frame, in);
-  else
-    return rate(system, y, frame, in);
 }
 }  // namespace tendonlab::integrate

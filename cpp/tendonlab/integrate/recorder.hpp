@@ -82,7 +82,8 @@ class Recorder {
         while (from + here != time.end() && from[here] - ago <= reached) ++here;
       if (here < fewest) return;
       const Lanes at =
-          (full ? Lanes(&*from) : by_lane<Lanes>([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; })) - ago;
+          (full ? Lanes(&*from) : by_lane<Lanes>([&](int l) { return from[std::min<std::ptrdiff_t>(l, here - 1)]; })) -
+          ago;
       auto y = s.at(Lanes((at - over.start) * (1.0 / over.length)));
       y.at.time = at;
       write(y, first);
@@ -107,9 +108,8 @@ class Recorder {
       });
     for (std::size_t c = 0; late && c < channels; ++c)
       if (rows[c])
-        in_groups(s, over, reached, delay[c], next[c], [&](const auto& y, std::size_t first) {
-          put(together->outputs(y, needs[c])[c], rows[c], first);
-        });
+        in_groups(s, over, reached, delay[c], next[c],
+                  [&](const auto& y, std::size_t first) { put(together->outputs(y, needs[c])[c], rows[c], first); });
     if (shown.any())
       in_groups(s, over, reached, 0.0, next_port, [&](const auto& y, std::size_t first) {
         together->ports(y, shown, [&](std::size_t port, int quantity, const Lanes& values) {

@@ -158,12 +158,12 @@ struct Signal {
     const S from_first = select(begun > 0.0, begun, S(0.0));
     return select(from_first < pieces() - 1.0, from_first, S(pieces() - 1.0));
   }
-  /// Finds the pieces of all lanes; false where one is too near to a knot to tell.
+  /// Finds the pieces of all lanes; false where one is too near to a knot to tell. Without bends either piece will do.
   TENDONLAB_INLINE bool guess(const Lanes& time, LanePieces& piece) const {
     const Lanes place = place_of(time);
     for (int l = 0; l < Lanes::count; ++l) piece[static_cast<std::size_t>(l)] = static_cast<int>(place[l]);
     const Lanes off = place - in_each(piece, [](int i) { return i + 0.5; });
-    return !any(abs(off) >= 0.5 - drift);
+    return !any(abs(off) > (bends ? 0.5 - drift : 0.5 + drift));
   }
   /// Joins held pieces of equal value, so that the stepper lands where something happens and nowhere else.
   void join() {

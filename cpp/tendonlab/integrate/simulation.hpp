@@ -115,7 +115,8 @@ class Simulation {
                    Record&& record) {
     if (!(wish > 0)) return reject(tried, wish, trajectory);
     const Step<Y> s = step();
-    accept(tried, s, wish, crosses || plain_frame.holds ? earliest_crossing(values(s)) : Crossing{}, trajectory, record);
+    accept(tried, s, wish, crosses || plain_frame.holds ? earliest_crossing(values(s)) : Crossing{}, trajectory,
+           record);
   }
   const Frame<Values, double>& modes_now() const { return plain_frame; }
   const Drive<T>& inputs() const { return drive; }

@@ -88,7 +88,7 @@ TENDONLAB_INLINE void stage(const System& system, const Y& y, const Frame<System
   Rate<T, n, nz> f = blocks.rate;
   if constexpr (i > 0) {
     at.at.time = y.at.time + Tableau::c[i] * h;
-    f = rate_for_step(system, at, frame, in);
+    f = rate(system, at, frame, in);
   }
   const Plain<T> drift = h * Tableau::d[i];
   for (std::size_t j = 0; j < n; ++j) {
@@ -111,9 +111,8 @@ template <class Tableau, class System, class T, class Inputs>
   const Elimination<System, T> solver(blocks, h, Tableau::gamma);
   const Plain<T> per_h = 1.0 / h;
   Y k[Tableau::stages], at = y;
-  unroll<Tableau::stages>([&](auto i) TENDONLAB_ALWAYS {
-    stage<Tableau, i>(system, y, frame, in, h, per_h, blocks, solver, at, k);
-  });
+  unroll<Tableau::stages>(
+      [&](auto i) TENDONLAB_ALWAYS { stage<Tableau, i>(system, y, frame, in, h, per_h, blocks, solver, at, k); });
   // Stiffly accurate: the last stage and its increment, which is the error.
   add(at, 1.0, k[Tableau::stages - 1]);
   Step<Y> s{y, at, {}, {}, {}, k[Tableau::stages - 1]};
@@ -130,7 +129,7 @@ template <class Tableau, class System, class T, class Inputs>
 template <class System, class T, class Inputs>
 TENDONLAB_INLINE StateOf<System, T> change(const System& system, const StateOf<System, T>& y,
                                            const Frame<System, T>& frame, const Inputs& in, Plain<T> h) {
-  const auto f = rate_for_step(system, y, frame, in);
+  const auto f = rate(system, y, frame, in);
   StateOf<System, T> k;
   for (std::size_t j = 0; j < System::dof; ++j) {
     k.at.position[j] = h * y.at.velocity[j];
