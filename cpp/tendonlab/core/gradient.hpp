@@ -3,15 +3,16 @@
 #include "tendonlab/core/lanes.hpp"
 
 namespace tendonlab {
-/// The value is broadcast over its vector: a product then needs no shuffle. Eight derivatives share the work for the
+/// The value is broadcast over its vector: a product then needs no shuffle. The derivatives share the work for the
 /// value, the step control and the events. Vectors of the language that are wider than a register would be slow.
-struct Gradient {
-  static constexpr int width = Lanes::count;  ///< number of directions
+template <int directions>
+struct GradientOf {
+  static constexpr int width = directions;
   Word value;
-  Lanes d;
-  Gradient() : value{} {}
-  Gradient(double a) : value(Word{} + a) {}
-  Gradient(const Word& of, const Lanes& slopes) : value(of), d(slopes) {}
+  Pack<width> d;
+  GradientOf() : value{} {}
+  GradientOf(double a) : value(Word{} + a) {}
+  GradientOf(const Word& of, const Pack<width>& slopes) : value(of), d(slopes) {}
   /// Calls f(derivative) for the first `count` of them.
   template <class F>
   void each_derivative(int count, F&& f) const {
@@ -19,102 +20,116 @@ struct Gradient {
   }
   void seed(int i, double slope) { d.set(i, slope); }
 };
-template <>
-struct PlainOf<Gradient> {
+using Gradient = GradientOf<8>;
+/// For more directions, where two registers hold them.
+using WideGradient = GradientOf<16>;
+inline constexpr int most_directions = 2 * widest_word < WideGradient::width ? Gradient::width : WideGradient::width;
+
+template <int width>
+struct PlainOf<GradientOf<width>> {
   using type = double;
 };
 
+#define TENDONLAB_GRADIENT \
+  template <int width>     \
+  TENDONLAB_INLINE GradientOf<width>
 /// Slopes times a number that is broadcast.
-TENDONLAB_INLINE Lanes operator*(const Word& a, const Lanes& b) {
-  return by_words<Lanes>([&](int i) TENDONLAB_ALWAYS { return a * b.word[i]; });
+template <int width>
+TENDONLAB_INLINE Pack<width> operator*(const Word& a, const Pack<width>& b) {
+  static_assert(Pack<width>::word_size == widest_word);
+  return by_words<Pack<width>>([&](int i) TENDONLAB_ALWAYS { return a * b.word[i]; });
 }
-TENDONLAB_INLINE Gradient operator+(const Gradient& a, const Gradient& b) {
+TENDONLAB_GRADIENT operator+(const GradientOf<width>& a, const GradientOf<width>& b) {
   return {a.value + b.value, a.d + b.d};
 }
-TENDONLAB_INLINE Gradient operator-(const Gradient& a, const Gradient& b) {
+TENDONLAB_GRADIENT operator-(const GradientOf<width>& a, const GradientOf<width>& b) {
   return {a.value - b.value, a.d - b.d};
 }
-TENDONLAB_INLINE Gradient operator-(const Gradient& a) {
+TENDONLAB_GRADIENT operator-(const GradientOf<width>& a) {
   return {-a.value, -a.d};
 }
-TENDONLAB_INLINE Gradient operator*(const Gradient& a, const Gradient& b) {
+TENDONLAB_GRADIENT operator*(const GradientOf<width>& a, const GradientOf<width>& b) {
   return {a.value * b.value, a.value * b.d + b.value * a.d};
 }
-TENDONLAB_INLINE Gradient operator/(const Gradient& a, const Gradient& b) {  // a / a is exactly 1: stick relies on it
+TENDONLAB_GRADIENT operator/(const GradientOf<width>& a,
+                             const GradientOf<width>& b) {  // a / a is exactly 1: stick relies on it
   const Word v = a.value / b.value, i = 1.0 / b.value;
   return {v, i * (a.d - v * b.d)};
 }
-TENDONLAB_INLINE Gradient operator+(double a, const Gradient& b) {
+TENDONLAB_GRADIENT operator+(double a, const GradientOf<width>& b) {
   return {a + b.value, b.d};
 }
-TENDONLAB_INLINE Gradient operator+(const Gradient& a, double b) {
+TENDONLAB_GRADIENT operator+(const GradientOf<width>& a, double b) {
   return b + a;
 }
-TENDONLAB_INLINE Gradient operator-(double a, const Gradient& b) {
+TENDONLAB_GRADIENT operator-(double a, const GradientOf<width>& b) {
   return {a - b.value, -b.d};
 }
-TENDONLAB_INLINE Gradient operator-(const Gradient& a, double b) {
+TENDONLAB_GRADIENT operator-(const GradientOf<width>& a, double b) {
   return {a.value - b, a.d};
 }
-TENDONLAB_INLINE Gradient operator*(double a, const Gradient& b) {
+TENDONLAB_GRADIENT operator*(double a, const GradientOf<width>& b) {
   return {a * b.value, a * b.d};
 }
-TENDONLAB_INLINE Gradient operator*(const Gradient& a, double b) {
+TENDONLAB_GRADIENT operator*(const GradientOf<width>& a, double b) {
   return b * a;
 }
-TENDONLAB_INLINE Gradient operator/(double a, const Gradient& b) {
+TENDONLAB_GRADIENT operator/(double a, const GradientOf<width>& b) {
   const Word i = 1.0 / b.value, v = a * i, s = -(v * i);
   return {v, s * b.d};
 }
-TENDONLAB_INLINE Gradient operator/(const Gradient& a, double b) {
+TENDONLAB_GRADIENT operator/(const GradientOf<width>& a, double b) {
   return (1.0 / b) * a;
 }
-TENDONLAB_INLINE Gradient exp(const Gradient& a) {
+TENDONLAB_GRADIENT exp(const GradientOf<width>& a) {
   const Word e = Word{} + exp(a.value[0]);
   return {e, e * a.d};
 }
-TENDONLAB_INLINE Gradient sin(const Gradient& a) {
+TENDONLAB_GRADIENT sin(const GradientOf<width>& a) {
   const double c = cos(a.value[0]);
   return {Word{} + sin(a.value[0]), c * a.d};
 }
-TENDONLAB_INLINE Gradient cos(const Gradient& a) {
+TENDONLAB_GRADIENT cos(const GradientOf<width>& a) {
   const double s = -sin(a.value[0]);
   return {Word{} + cos(a.value[0]), s * a.d};
 }
 /// A function of one number, with its value and slope.
-TENDONLAB_INLINE Gradient chain(double value, double slope, const Gradient& a) {
+TENDONLAB_GRADIENT chain(double value, double slope, const GradientOf<width>& a) {
   return {Word{} + value, slope * a.d};
 }
-TENDONLAB_INLINE Gradient log(const Gradient& a) {
+TENDONLAB_GRADIENT log(const GradientOf<width>& a) {
   return chain(log(a.value[0]), 1.0 / a.value[0], a);
 }
-TENDONLAB_INLINE Gradient sqrt(const Gradient& a) {
+TENDONLAB_GRADIENT sqrt(const GradientOf<width>& a) {
   const double root = sqrt(a.value[0]);
   return chain(root, 0.5 / root, a);
 }
-TENDONLAB_INLINE Gradient tanh(const Gradient& a) {
+TENDONLAB_GRADIENT tanh(const GradientOf<width>& a) {
   const double t = tanh(a.value[0]);
   return chain(t, 1.0 - t * t, a);
 }
-TENDONLAB_INLINE Gradient atan(const Gradient& a) {
+TENDONLAB_GRADIENT atan(const GradientOf<width>& a) {
   return chain(atan(a.value[0]), 1.0 / (1.0 + a.value[0] * a.value[0]), a);
 }
-TENDONLAB_INLINE Gradient expm1(const Gradient& a) {
+TENDONLAB_GRADIENT expm1(const GradientOf<width>& a) {
   const double e = expm1(a.value[0]);
   return chain(e, e + 1.0, a);
 }
-TENDONLAB_INLINE Gradient abs(const Gradient& a) {
+TENDONLAB_GRADIENT abs(const GradientOf<width>& a) {
   return a.value[0] < 0.0 ? -a : a;
 }
-TENDONLAB_INLINE Gradient select(bool condition, const Gradient& a, const Gradient& b) {
+TENDONLAB_GRADIENT select(bool condition, const GradientOf<width>& a, const GradientOf<width>& b) {
   return condition ? a : b;
 }
-inline double plain(const Gradient& a) {
+template <int width>
+double plain(const GradientOf<width>& a) {
   return a.value[0];
 }
-inline bool varies(const Gradient& a) {
-  for (int k = 0; k < Gradient::width; ++k)
+template <int width>
+bool varies(const GradientOf<width>& a) {
+  for (int k = 0; k < width; ++k)
     if (a.d[k] != 0.0) return true;
   return false;
 }
+#undef TENDONLAB_GRADIENT
 }  // namespace tendonlab

@@ -14,7 +14,7 @@ class Prediction {
   /// ParameterError.
   Linearised at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) const;
   /// Does one simulation give all derivatives?
-  bool takes_one_simulation() const { return seeds.size() <= integrate::seeds_at_once; }
+  bool takes_one_simulation() const { return seeds.size() <= seeds_at_once(); }
   std::vector<double> states(const Eigen::VectorXd& z) const;
   Eigen::VectorXd coordinates(const std::vector<double>& states) const;
 

@@ -46,7 +46,6 @@ struct Seed {
   enum class Of { parameter, position, velocity } of = Of::parameter;
   int index = 0;
 };
-inline constexpr std::size_t seeds_at_once = 8;  ///< that one simulation carries along; more take further ones
 
 /// Which quantities of ports are recorded.
 struct PortRows {

@@ -27,6 +27,9 @@ std::vector<std::unique_ptr<Model>> make(Laws<Of...>) {
 }
 }  // namespace
 
+std::size_t seeds_at_once() {
+  return most_directions;
+}
 const std::vector<std::unique_ptr<Model>>& models() {
   static const auto all = make(systems::All{});
   return all;

@@ -86,6 +86,8 @@ class Model {
   virtual integrate::Balance balance(const Configuration& with, const integrate::Experiment& experiment,
                                      const integrate::MeasuredMotion& motion) const = 0;
 };
+/// How many directions one simulation carries along; more take further ones.
+std::size_t seeds_at_once();
 /// All systems of the library, in the order in which they are listed.
 const std::vector<std::unique_ptr<Model>>& models();
 /// The system of that kind; throws ParameterError, naming those there are.

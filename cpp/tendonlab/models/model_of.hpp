@@ -37,10 +37,15 @@ class ModelOf final : public Model {
     if (settings.ports.any())
       out.port.assign(Of<double>::ports.size() * settings.ports.count() * experiment.time.size(), 0.0);
     if (seeds.empty()) systems::run<Of, double>({{description, with, seeds, 0, 0}, experiment, settings, out});
-    static_assert(integrate::seeds_at_once == Gradient::width);
-    for (std::size_t first = 0; first < seeds.size(); first += integrate::seeds_at_once) {
-      const auto count = std::min(seeds.size() - first, integrate::seeds_at_once);
-      systems::run<Of, Gradient>({{description, with, seeds, first, count}, experiment, settings, out});
+    for (std::size_t first = 0; first < seeds.size(); first += seeds_at_once()) {
+      const std::size_t count = std::min(seeds.size() - first, seeds_at_once());
+      const systems::Job job{{description, with, seeds, first, count}, experiment, settings, out};
+      if constexpr (most_directions > Gradient::width)
+        if (count > Gradient::width) {
+          systems::run<Of, WideGradient>(job);
+          continue;
+        }
+      systems::run<Of, Gradient>(job);
     }
     return out;
   }
