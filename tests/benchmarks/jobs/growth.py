@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +14,7 @@ import tendonlab as tl
 from benchmarks import mass, mechanism
 from benchmarks.clock import Call, alternate
 from benchmarks.options import Options
+from benchmarks.peers import natives
 from benchmarks.sweep import masses
 from benchmarks.table import Table, count_text, ratio_text, seconds_text
 from tendonlab import _core
@@ -22,9 +26,16 @@ PARAMETERS = (0, 1, 2, 4, 6, 8, 12, 16, 20, 25, 30)
 SAMPLES = (1_000, 10_000, 100_000, 1_000_000)
 POINTS = (1, 10, 100, 1_000, 10_000, 100_000)
 MOST_ROUNDS = 3  # of the long ones
+SYSTEMS_NOTE = "Time per attempted step with 11 outputs."
+CONTACTS = (1, 4, 16, 32, 64)
 CONTACTS_NOTE = (
-    "Time per attempted step with 11 outputs. Five friction contacts are the most that one system of the library has, "
-    "so growth up to 64 contacts cannot be measured yet."
+    "Time per attempted step of one joint with so many bristles, each with Coulomb, viscous and Stribeck friction; "
+    "compiled for this table, since five contacts are the most that a system of the library has."
+)
+CORE = Path(__file__).resolve().parents[3] / "cpp"
+COMPILER = (
+    *("c++", "-std=c++17", f"-I{CORE}", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros"),
+    *("-ffp-contract=fast", "-fno-ipa-sra", "--param=sra-max-scalarization-size-Ospeed=8192", "-Wno-psabi"),
 )
 # Effects that bring J2 to 30 directions; each too weak to change its motion much.
 MORE: dict[str, dict[str, float]] = {
@@ -41,7 +52,13 @@ SHARES = ("joint_presliding_share", "presliding_share", "stribeck_share")
 
 
 def run(options: Options) -> list[Table]:
-    return [_contacts(options.rounds), _parameters(options.rounds), _samples(options.rounds), _points(options.rounds)]
+    return [
+        _systems(options.rounds),
+        _contacts(options.rounds),
+        _parameters(options.rounds),
+        _samples(options.rounds),
+        _points(options.rounds),
+    ]
 
 
 def simulation(system: System, driver: np.ndarray, time: np.ndarray, num: int, seeds: Any = ()) -> Call:
@@ -61,6 +78,22 @@ def simulation(system: System, driver: np.ndarray, time: np.ndarray, num: int, s
 
 
 def _contacts(rounds: int) -> Table:
+    columns, title = ("bristles", "per step", "ratio", "per step and bristle"), "Growth with contacts"
+    core = natives.shared_object("contacts.cpp", *COMPILER)
+    if core is None:
+        return Table(columns, (), ("Skipped: no C++ compiler that can compile the core.",), title)
+    core.simulate.argtypes, core.simulate.restype = (ctypes.c_int, ctypes.c_double), ctypes.c_long
+    calls = [partial(core.simulate, num, TOLERANCE) for num in CONTACTS]
+    steps = [call() for call in calls]
+    each = [spent / num for spent, num in zip(alternate(calls, rounds=rounds), steps, strict=True)]
+    found = [
+        (str(num), seconds_text(s), ratio_text(s / each[0]), seconds_text(s / num))
+        for num, s in zip(CONTACTS, each, strict=True)
+    ]
+    return Table(columns, tuple(found), (CONTACTS_NOTE,), title)
+
+
+def _systems(rounds: int) -> Table:
     one, five = mass.driven(force=False), mechanism.coupled(tensions=True)
     sine = np.sin(2.0 * np.pi * mass.FREQUENCY * one.time)
     turn = mechanism.AMPLITUDE * np.sin(mechanism.OMEGA * five.time)
@@ -77,7 +110,7 @@ def _contacts(rounds: int) -> Table:
     each = [seconds / num for seconds, num in zip(spent, steps, strict=True)]
     found = [(*case[:3], seconds_text(s), ratio_text(s / each[0])) for case, s in zip(cases, each, strict=True)]
     return Table(
-        ("system", "DoF", "bristles", "per step", "ratio"), tuple(found), (CONTACTS_NOTE,), "Growth with contacts"
+        ("system", "DoF", "bristles", "per step", "ratio"), tuple(found), (SYSTEMS_NOTE,), "Systems of the library"
     )
 
 

@@ -29,9 +29,8 @@ PACKAGES = {"cvode.c": "libsundials-dev", "odeint.cpp": "libboost-dev"}
 
 
 @cache
-def library(source: str) -> Callable[..., int] | None:
-    """The function `integrate` of a source; None where it cannot be compiled."""
-    compiler, *options = COMPILERS[source]
+def shared_object(source: str, compiler: str, *options: str) -> ctypes.CDLL | None:
+    """A source of this folder, compiled; None where that fails."""
     if shutil.which(compiler) is None:
         return None
     folder = tempfile.mkdtemp(prefix="benchmarks-")
@@ -40,7 +39,16 @@ def library(source: str) -> Callable[..., int] | None:
     command = [compiler, "-O3", "-march=native", "-shared", "-fPIC", str(HERE / source), "-o", out, *options]
     if subprocess.run(command, capture_output=True).returncode:
         return None
-    integrate: Any = ctypes.CDLL(out).integrate
+    return ctypes.CDLL(out)
+
+
+@cache
+def library(source: str) -> Callable[..., int] | None:
+    """The function `integrate` of a source; None where it cannot be compiled."""
+    compiled = shared_object(source, *COMPILERS[source])
+    if compiled is None:
+        return None
+    integrate: Any = compiled.integrate
     pointer, number, whole = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
     integrate.argtypes = (pointer, pointer, whole, number, pointer, whole, pointer)
     return integrate  # type: ignore[no-any-return]
