@@ -14,10 +14,11 @@ BUILDS = ("wide", "base")  # the best first
 
 
 def _load(build: str) -> ModuleType:
-    """The build of that name, under the name of this module. ImportError where the processor or the build lacks it."""
+    """The build of that name, under the name of this module. ModuleNotFoundError where it was not installed,
+    ImportError where the processor lacks its instructions."""
     found = find_spec(f"{__name__}_{build}")
     if found is None or found.origin is None:
-        raise ImportError(f"tendonlab was installed without the build {build!r} of its core")
+        raise ModuleNotFoundError(f"tendonlab was installed without the build {build!r} of its core")
     spec = spec_from_loader(__name__, ExtensionFileLoader(__name__, found.origin))
     assert spec is not None
     assert spec.loader is not None
@@ -31,7 +32,11 @@ def _choose() -> ModuleType:
     if wanted is None:
         try:
             return _load(BUILDS[0])
-        except ImportError:
+        except ModuleNotFoundError:
+            return _load(BUILDS[-1])
+        except ImportError as error:  # a broken file is no reason to be slower in silence
+            if "needs a processor" not in str(error):
+                raise
             return _load(BUILDS[-1])
     if wanted not in BUILDS:
         raise ImportError(f"TENDONLAB_CORE = {wanted!r}: expected {' or '.join(BUILDS)}")

@@ -247,6 +247,7 @@ class Settings:
         outputs: Sequence[int] | None = None,
     ) -> None: ...
 
+def port_quantities() -> list[str]: ...
 def simulate(
     kind: str,
     values: Sequence[float],

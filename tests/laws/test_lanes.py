@@ -9,7 +9,7 @@ import pytest
 from examples import T, example, with_effect
 from integrate.rig import FRICTION, INERTIAS, NOMINAL, controller, joint, pair, run, run_many
 from tendonlab.simulation.catalog import kinds, system_info
-from tendonlab.simulation.signals import hold, smooth
+from tendonlab.simulation.signals import averaged, hold, linear, smooth
 from tendonlab.simulation.system import System
 
 SLOWEST = ("cable_joint", "ccsrm")
@@ -80,6 +80,17 @@ def test_every_loop_in_lanes(loop: Any, late: tuple[str, ...]) -> None:
     one = joint(("joint:coulomb", "joint:viscous", *late), **values)
     systems = [one.with_parameters({"coulomb": 0.05 * k, "inertia": 0.02 * (1 + 0.1 * k)}) for k in (1.0, 0.5, 2.0)]
     assert_each_is_alone(systems, T, {"motor_torque": 0.1 * WAVE}, loop=loop, position=[0.1])
+
+
+@pytest.mark.parametrize("jitter", [1e-9, 0.01, 0.09], ids=["rounded", "uneven", "very uneven"])
+@pytest.mark.parametrize("between", [smooth, averaged, linear])
+def test_uneven_stamps_in_lanes(between: Any, jitter: float) -> None:
+    """The pieces of an input are found by their mean length: lanes look into the same ones as a single simulation."""
+    stamps = T + jitter * (T[1] - T[0]) * np.sin(1e4 * T)
+    loop = controller(between(stamps, WAVE), kind="injection", proportional=3.0, derivative=0.2)
+    one = joint(("joint:viscous",), inertia=0.02, viscous=0.02)
+    systems = [one.with_parameters({"inertia": 0.02 * factor}) for factor in (1.0, 0.93, 1.11)]
+    assert_each_is_alone(systems, stamps, {"motor_torque": 0.1 * WAVE}, loop=loop)
 
 
 def test_points_with_different_effects_and_modes_in_one_call() -> None:

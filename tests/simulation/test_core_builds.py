@@ -59,6 +59,19 @@ def test_an_unknown_build_is_refused():
     assert "TENDONLAB_CORE = 'widest': expected wide or base" in done.stderr
 
 
+def test_without_the_wide_build_the_base_one_is_taken():
+    code = """
+import importlib.util as util
+find = util.find_spec
+util.find_spec = lambda name, *rest: None if name.endswith("_core_wide") else find(name, *rest)
+from tendonlab import _core
+print(_core.__file__)
+"""
+    variables = {name: value for name, value in os.environ.items() if name != "TENDONLAB_CORE"}
+    done = subprocess.run([sys.executable, "-c", code], env=variables, capture_output=True, text=True)
+    assert "_core_base" in done.stdout, done.stderr
+
+
 def test_the_core_keeps_its_name_whatever_its_file():
     assert _core.__name__ == "tendonlab._core"
     assert _core.Signal.__module__ == "tendonlab._core"

@@ -13,8 +13,7 @@ Array to_array(std::vector<double> values, std::vector<py::ssize_t> shape) {
 PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
   if (const char* lacking = tendonlab::bindings::lacking_instructions())
-    throw py::import_error(std::string("this build of tendonlab needs a processor with ") + lacking +
-                           "; build it with -C cmake.define.TENDONLAB_PROCESSOR=x86-64");
+    throw py::import_error(std::string("this build of tendonlab needs a processor with ") + lacking);
   module.doc() = "The compiled core of tendonlab: laws, systems, simulation, identification.";
   // The Python package owns the error types; the core only raises them.
   py::register_exception_translator([](std::exception_ptr thrown) {

@@ -92,7 +92,7 @@ py::dict simulate(const std::string& kind, const std::vector<double>& values, co
 /// What is recorded of ports, by its names.
 integrate::PortRows rows_named(const std::vector<std::string>& names) {
   using integrate::PortRows;
-  static constexpr std::array<std::string_view, PortRows::all> known{"velocity", "position", "load", "force"};
+  const auto& known = PortRows::names;
   PortRows rows;
   for (const std::string& name : names) {
     const auto found = std::find(known.begin(), known.end(), name);
@@ -102,7 +102,8 @@ integrate::PortRows rows_named(const std::vector<std::string>& names) {
   }
   return rows;
 }
-std::uint32_t bits_of(const std::optional<std::vector<unsigned>>& outputs) {
+/// A bit for each; the last bit is set only where all are wanted.
+std::uint32_t wanted_outputs(const std::optional<std::vector<unsigned>>& outputs) {
   if (!outputs) return ~0u;
   std::uint32_t bits = 0;
   for (const unsigned c : *outputs) {
@@ -192,7 +193,7 @@ void bind_experiments(py::module_& module) {
              require_within("position_scale", position_scale, 1e-300, 1e300);
              require_within("velocity_scale", velocity_scale, 1e-300, 1e300);
              return integrate::Settings{tolerance,    position_scale,    velocity_scale,
-                                        max_attempts, rows_named(ports), bits_of(outputs)};
+                                        max_attempts, rows_named(ports), wanted_outputs(outputs)};
            }),
            py::kw_only(), py::arg("tolerance") = 1e-6, py::arg("position_scale") = 1e-2,
            py::arg("velocity_scale") = 1e-2, py::arg("max_attempts") = 20'000'000L,
@@ -213,6 +214,13 @@ void bind_systems(py::module_& module) {
       py::arg("kind"), py::arg("values"), py::arg("active"),
       "Motion of each degree of freedom with the first if nothing stretched, inertia and effort per unit of command.");
   bind_experiments(module);
+  module.def(
+      "port_quantities",
+      [] {
+        const auto& names = integrate::PortRows::names;
+        return std::vector<std::string>(names.begin(), names.end());
+      },
+      "What can be recorded of each port.");
   module.def("simulate", &simulate, py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("experiment"),
              py::arg("seeds"), py::arg("settings"),
              "Outputs (channels, samples), their gradient (seeds, channels, samples), ports (ports, wanted quantities, "

@@ -114,6 +114,9 @@ TENDONLAB_PACK(Pack) select(const PackMask<size>& m, const Pack<size>& a, const 
 TENDONLAB_PACK(Pack) select(const PackMask<size>& m, const Pack<size>& a, double b) {
   return select(m, a, Pack<size>(b));
 }
+TENDONLAB_PACK(Pack) select(const PackMask<size>& m, double a, double b) {
+  return select(m, Pack<size>(a), Pack<size>(b));
+}
 TENDONLAB_PACK(Pack) select(bool m, const Pack<size>& a, const Pack<size>& b) {
   return m ? a : b;
 }

@@ -76,6 +76,8 @@ enum : unsigned {
 ///   T lateness() const;   time by which it shifts a signal, s, else 0
 ///   T half_gap() const;   half of the gap that it leaves open in a motion, else 0
 ///   T dry_share() const;  share of the dry friction that its memory leaves to the slot, else 1
+///   bool mirrored;        is told whether its port is
+/// A law's parameters may be plain numbers where what it sees is a pack of ports: nothing seen is converted to T.
 template <class Law, class = void>
 inline constexpr bool delays_signal = false;
 template <class Law>
@@ -89,7 +91,6 @@ inline constexpr bool takes_over_dry_friction = false;
 template <class Law>
 inline constexpr bool takes_over_dry_friction<Law, std::void_t<decltype(&Law::dry_share)>> = true;
 
-/// A law that states `bool mirrored` learns whether its port is.
 template <class Law, class = void>
 inline constexpr bool asks_if_mirrored = false;
 template <class Law>

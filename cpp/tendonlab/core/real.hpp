@@ -105,7 +105,7 @@ TENDONLAB_INLINE W roughly_power_of(const W& x, double exponent) {
                          (octave + mantissa * (2.0 - mantissa * (1.0 / 3.0)) - 5.0 / 3.0));
 }
 TENDONLAB_INLINE double roughly_power(double x, double exponent) {
-  return roughly_power_of<double, std::int64_t>(x, exponent);
+  return roughly_power_of<double, std::uint64_t>(x, exponent);
 }
 
 inline double log(double x) {

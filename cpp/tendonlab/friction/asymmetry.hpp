@@ -27,7 +27,7 @@ struct Asymmetry {
   }
   template <class S>
   S factor(const Sliding<S>& at) const {
-    return lift<S>(T(1.0 + at.direction * level_asymmetry));
+    return lift<S>(1.0 + at.direction * level_asymmetry);
   }
   template <class S>
   S force(const Sliding<S>& at) const {

@@ -25,7 +25,7 @@ struct Efficiency {
   }
   template <class S>
   S level(const Sliding<S>& at) const {
-    const T share = select(plain(at.load) * at.direction >= 0.0, loss, T(loss * back_driven));
+    const auto share = select(plain(at.load) * at.direction >= 0.0, loss, T(loss * back_driven));
     return share * abs(at.load);
   }
 };

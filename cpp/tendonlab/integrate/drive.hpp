@@ -51,11 +51,6 @@ class Drive : public Readings<T> {
     if (from.loop.kind != Loop::Kind::open) look(from.loop.reference, reference_piece, by);
     return next;
   }
-  /// Does the slope of an input jump at knots? Derivatives by a delay jump there too, which no step length shows.
-  bool bends() const {
-    const auto some = std::any_of(from.inputs.begin(), from.inputs.end(), [](const Signal& s) { return s.bends; });
-    return some || from.loop.disturbance.bends || from.loop.reference.bends;
-  }
   /// Moves the held inputs that no delay touches to the piece that begins at `now`, which the stepper has landed on.
   void pass_known(double now) {
     for (std::size_t k = 1; k < from.inputs.size(); ++k) move(from.inputs[k], piece[k], 0.0, now);

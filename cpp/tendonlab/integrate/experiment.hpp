@@ -1,7 +1,9 @@
 #pragma once
 // The input and the result of a simulation: plain data, the same for every system.
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "tendonlab/integrate/signal.hpp"
@@ -51,6 +53,7 @@ struct Seed {
 struct PortRows {
   enum Quantity { velocity, position, load, force };
   static constexpr int all = 4;
+  static constexpr std::array<std::string_view, all> names{"velocity", "position", "load", "force"};
   std::uint32_t wanted = 0;  ///< a bit per quantity
   bool has(int quantity) const { return (wanted >> quantity & 1u) != 0; }
   bool any() const { return wanted != 0; }

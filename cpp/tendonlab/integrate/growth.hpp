@@ -14,7 +14,7 @@ TENDONLAB_INLINE P larger(const P& a, const P& b) {
 template <class Method, class System, class T>
 TENDONLAB_INLINE Plain<T> mean_square_error(const System& system, const Settings& settings,
                                             const StateOf<System, T>& from, const Step<StateOf<System, T>>& s,
-                                            const Plain<T> (&memory_level)[slots<System>]) {
+                                            const std::array<Plain<T>, slots<System>>& memory_level) {
   using P = Plain<T>;
   constexpr int n = System::dof, judged = systems::stated<System>;
   P sum(0.0);
@@ -43,6 +43,6 @@ template <class Method, class P>
 TENDONLAB_INLINE P growth_after(const P& mean_square) {
   const P factor = 0.9 * roughly_power(larger(mean_square, P(1e-12)), -0.5 / (Method::error_order + 1));
   const P judged = select(mean_square <= 1.0, P(-larger(P(-factor), P(-6.0))), P(-factor));
-  return select(mean_square < 1e300, judged, P(-0.15));  // else it is no number
+  return select(mean_square < 1e300, judged, P(-0.15));  // else it is infinite or NaN
 }
 }  // namespace tendonlab::integrate

@@ -149,7 +149,7 @@ TENDONLAB_INLINE void add_slot(Arrowhead<System, T>& a, const System& system, co
                                const StateOf<System, T>& y) {
   using Slot = SlotOf<System, i>;
   constexpr int n = System::dof, columns = 2 * n + 1, m = memory_before<System, i>(), has = Slot::states,
-                together = alike<System, T, i>();
+                together = num_together<System, T, i>();
   const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
   if (slot.active == 0) {
     if constexpr (has > 0) {

@@ -1,6 +1,6 @@
 #pragma once
-// Eight simulations of one experiment whose steps are computed together, one in each lane. Whatever is decided, each
-// simulation decides for itself: so the answer of one does not depend on its neighbours.
+// Eight simulations of one experiment whose steps are computed together, one in each lane. Whatever is decided follows
+// from a lane's own numbers: so the answer of one does not depend on its neighbours.
 #include "tendonlab/integrate/lane_readings.hpp"
 #include "tendonlab/integrate/simulation.hpp"
 
@@ -117,7 +117,7 @@ class Lockstep {
   StateOf<System, Lanes> y;
   Frame<System, Lanes> frame{};
   Lanes length{1.0};
-  Lanes memory_level[slots<System>];
+  std::array<Lanes, slots<System>> memory_level;
   std::array<int, count> waited{};  ///< attempts that a simulation was left out of
 };
 }  // namespace tendonlab::integrate

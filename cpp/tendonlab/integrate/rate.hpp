@@ -1,6 +1,8 @@
 #pragma once
 // The rate of a system, from the one text of its laws, with sticking ports held at rest. linearise.hpp states the same
-// equation of motion with its partials: values alone, in five of six stages, cost a fraction of that.
+// equation of motion with its partials: values alone, in seven of eight stages, cost a fraction of that.
+#include <algorithm>
+
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::integrate {
@@ -129,8 +131,8 @@ TENDONLAB_INLINE Response<S> respond_for_step(const Slot& slot, const Port& at, 
 /// nothing, 0 for those that an earlier port speaks for. Only in plain simulations of one point: elsewhere the words of
 /// the processor are filled by lanes or directions.
 template <class System, class T, int i>
-constexpr int alike() {
-  constexpr int fewest = 3, most = 4;
+constexpr int num_together() {
+  constexpr int fewest = 3, most = 4;  // a pair would leave half of a pack empty
   if constexpr (!std::is_same_v<T, double> || SlotOf<System, i>::asks_if_mirrored()) {
     return 1;
   } else {
@@ -178,7 +180,7 @@ template <class Slot, int count, class Port, class Memory>
 template <class System, class T, class Coupled, class Memory, class F>
 TENDONLAB_INLINE void each_response(const System& system, const Coupled& c, const Memory& memory, F&& f) {
   unroll<slots<System>>([&](auto i) TENDONLAB_ALWAYS {
-    constexpr int m = memory_before<System, i>(), together = alike<System, T, i>();
+    constexpr int m = memory_before<System, i>(), together = num_together<System, T, i>();
     using Slot = SlotOf<System, i>;
     const auto& slot = std::get<static_cast<std::size_t>(i)>(system.slot);
     if (slot.active == 0) return;

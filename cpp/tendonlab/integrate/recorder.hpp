@@ -99,20 +99,25 @@ class Recorder {
   }
   template <class Frame, class Inputs>
   void write_groups(const Step<Y>& s, const Interval& over, double reached, const Frame& frame, const Inputs& in) {
-    together->begin(frame, in);
+    bool begun = false;
+    const auto instants = [&]() -> auto& {
+      if (!begun) together->begin(frame, in);
+      begun = true;
+      return *together;
+    };
     if (!late)
       in_groups(s, over, reached, 0.0, next[0], [&](const auto& y, std::size_t first) {
-        const auto seen = together->outputs(y, wanted);
+        const auto seen = instants().outputs(y, wanted);
         for (std::size_t c = 0; c < channels; ++c)
           if (rows[c]) put(seen[c], rows[c], first);
       });
     for (std::size_t c = 0; late && c < channels; ++c)
       if (rows[c])
         in_groups(s, over, reached, delay[c], next[c],
-                  [&](const auto& y, std::size_t first) { put(together->outputs(y, needs[c])[c], rows[c], first); });
+                  [&](const auto& y, std::size_t first) { put(instants().outputs(y, needs[c])[c], rows[c], first); });
     if (shown.any())
       in_groups(s, over, reached, 0.0, next_port, [&](const auto& y, std::size_t first) {
-        together->ports(y, shown, [&](std::size_t port, int quantity, const Lanes& values) {
+        instants().ports(y, shown, [&](std::size_t port, int quantity, const Lanes& values) {
           put(values, out.port_row(port, shown, quantity), first);
         });
       });

@@ -42,7 +42,7 @@ class Sampling {
  public:
   /// Writes outputs, their derivatives in `columns` columns from the first, and what the ports saw.
   Sampling(const System& of, const Experiment& experiment, Trajectory& into, int first_column, int columns,
-           const PortRows& shown)
+           const PortRows& shown, std::uint32_t outputs)
       : system(of), time(experiment.time), out(into), column(first_column), width(columns) {
     std::vector<std::array<T, channels>> all(time.size());
     SampleInputs<T> inputs(experiment);
@@ -54,9 +54,9 @@ class Sampling {
       if (shown.any()) write_ports(k, sample, shown);
     }
     out.attempts = static_cast<long>(time.size());
-    const auto rows = out.rows(~0u);
+    const auto rows = out.rows(outputs);
     for (std::size_t c = 0; c < channels; ++c)
-      for (std::size_t k = 0; k < time.size(); ++k) {
+      for (std::size_t k = 0; rows[c] && k < time.size(); ++k) {
         const T shown = system.sensor[c].apply(seen(all, c, k));
         rows[c][k] = plain(shown);
         out.write_derivatives(c, k, shown, column, width);

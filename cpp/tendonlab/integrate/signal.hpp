@@ -27,9 +27,9 @@ struct Signal {
   std::vector<std::array<double, 4>> coefficients;  ///< value, slope, half curvature, ... in time from the knot
   std::vector<double> before;                       ///< integral up to each knot
   double pieces_per_second = 0;                     ///< 0: pieces differ in length
-  double drift = 0;                                 ///< by which knots may lie beside that rhythm, in pieces
+  double drift = 0;                                 ///< largest distance of a knot from that rhythm, in pieces
   bool holds = false;                               ///< pieces are constant: the stepper lands on their borders
-  bool bends = false;                               ///< no value jumps, but the slope does from piece to piece
+  bool bends = false;                               ///< its slope jumps from piece to piece
 
   bool empty() const { return knots.empty(); }
   int pieces() const { return static_cast<int>(knots.size()); }
@@ -151,19 +151,21 @@ struct Signal {
     if constexpr (order == 0) return c0 + x * (c1 + x * (c2 + x * c3));
     return gathered(piece) + x * (c0 + x * (c1 / 2.0 + x * (c2 / 3.0 + x * (c3 / 4.0))));
   }
-  /// How many pieces of the mean length have begun by `time`, from 0 on.
+  /// Where `time` lies in pieces of the mean length, a fraction between 0 and the last piece.
   template <class S>
   TENDONLAB_INLINE S place_of(const S& time) const {
     const S begun = (time - knots.front()) * pieces_per_second;
     const S from_first = select(begun > 0.0, begun, S(0.0));
     return select(from_first < pieces() - 1.0, from_first, S(pieces() - 1.0));
   }
-  /// Finds the pieces of all lanes; false where one is too near to a knot to tell. Without bends either piece will do.
+  /// Finds the pieces of all lanes; false where one is too near to a knot to tell. At a knot without a bend either
+  /// piece will do, if rounding is all that puts the knot aside.
   TENDONLAB_INLINE bool guess(const Lanes& time, LanePieces& piece) const {
     const Lanes place = place_of(time);
     for (int l = 0; l < Lanes::count; ++l) piece[static_cast<std::size_t>(l)] = static_cast<int>(place[l]);
     const Lanes off = place - in_each(piece, [](int i) { return i + 0.5; });
-    return !any(abs(off) > (bends ? 0.5 - drift : 0.5 + drift));
+    const bool either_will_do = !bends && drift < 1e-6;
+    return either_will_do || !any(abs(off) > 0.5 - drift);
   }
   /// Joins held pieces of equal value, so that the stepper lands where something happens and nowhere else.
   void join() {
@@ -193,19 +195,22 @@ struct Signal {
       most = std::max(most, std::fabs(knots[i] - knots.front() - static_cast<double>(i) * length));
     if (most > 0.1 * length) return;
     pieces_per_second = 1.0 / length;
-    drift = most / length + 1e-9;
+    drift = most / length + 1e-9 + 1e-15 * pieces();
   }
   void find_bends() {
     const auto is_straight = [](const auto& c) { return c[2] == 0.0 && c[3] == 0.0; };
     bends = !holds && !empty() && std::all_of(coefficients.begin(), coefficients.end(), is_straight);
-    double steepest = 0, jump = 0;
+    double steepest = 0, jump = 0, largest = 0, leap = 0;
     for (std::size_t i = 1; i < knots.size() && !holds; ++i) {
       const auto& c = coefficients[i - 1];
       const double x = knots[i] - knots[i - 1], slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
+      const double value = c[0] + x * (c[1] + x * (c[2] + x * c[3]));
       steepest = std::max(steepest, std::fabs(slope));
       jump = std::max(jump, std::fabs(coefficients[i][1] - slope));
+      largest = std::max(largest, std::fabs(value));
+      leap = std::max(leap, std::fabs(coefficients[i][0] - value));
     }
-    bends = bends || jump > 1e-6 * steepest;
+    bends = bends || jump > 1e-6 * steepest || leap > 1e-9 * largest;
   }
   template <class F>
   static TENDONLAB_INLINE Lanes in_each(const PieceOf<Lanes>& piece, F f) {

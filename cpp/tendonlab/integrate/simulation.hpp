@@ -95,7 +95,7 @@ class Simulation {
     next.lands = next.length > (retakes ? reach : 0.95 * reach);
     if (next.lands) next.length = reach;
     if (pausing > 0 && !retakes) pause_at_knot(next);
-    const bool is_last = next.lands && end <= kink;  // once: not worth finding out whether it would be stable
+    const bool is_last = next.lands && end <= kink;  // one look at stability costs more than this one step saves
     next.explicitly = next.length < h && !is_last && next.length <= explicit_reach && next.length <= stable_reach();
     return next;
   }
@@ -121,7 +121,7 @@ class Simulation {
   const Frame<Values, double>& modes_now() const { return plain_frame; }
   const Drive<T>& inputs() const { return drive; }
   /// The friction level that the memory of each slot replaces.
-  const double (&memory_levels() const)[slots<System>] { return memory_level; }
+  const std::array<double, slots<System>>& memory_levels() const { return memory_level; }
   static constexpr double on_guard = 1e-13;  ///< up to here beyond its guard a mode holds
 
  private:
@@ -382,7 +382,7 @@ class Simulation {
   int patience = FEWEST_PAUSES;  ///< and how many shall after the next failure
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
   bool remembers = false;  ///< does any law have a memory?
-  double memory_level[slots<System>] = {};
+  std::array<double, slots<System>> memory_level{};
 
   template <class, class>
   friend class Jump;

@@ -15,7 +15,7 @@ __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInf
 AXES = ("rotary", "linear")
 LEVEL, FACTOR, MEMORY, REFINES, WHOLE = 2, 4, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
 DIMENSIONS = _core.dimensions()
-PORT_QUANTITIES = ("velocity", "position", "load", "force")  # that can be recorded of each port
+PORT_QUANTITIES = tuple(_core.port_quantities())  # that can be recorded of each port
 Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)
 
 
