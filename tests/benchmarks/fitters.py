@@ -99,7 +99,11 @@ def _residual(fit: Fit, start: np.ndarray, q: np.ndarray, *, tolerance: float, b
     point[SIX] = start * np.exp(q - 1.0)
     problem = replace(fit.problem, parameters=point)
     call = scipys.call(problem, tolerance, method="LSODA") if by_scipy else soda.scaled_call(problem, tolerance)
-    return np.nan_to_num(np.clip(fit.residual(call()), -WORST, WORST), nan=WORST)
+    try:
+        residual = fit.residual(call())
+    except RuntimeError:  # an integrator may give up far from the truth
+        return np.full(fit.measured.size, WORST)
+    return np.nan_to_num(np.clip(residual, -WORST, WORST), nan=WORST)
 
 
 OURS = (Fitter("tendonlab, free run", free_run), Fitter("tendonlab, injection, then free run", injection_first))
