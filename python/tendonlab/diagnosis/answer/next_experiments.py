@@ -83,7 +83,8 @@ def _gain(case: Case, floor: Floor, true: Fitted, other: Fitted, motion: Motion,
     marginal = Marginal.of(left, other.shares)
     r, moving = marginal.residual(left.residual - own.residual), ~np.array(other.at_bound, dtype=bool)
     j, prior = marginal.jacobian[:, moving], other.precision[np.ix_(moving, moving)]
-    gain = 0.5 * float(r @ r - (j.T @ r) @ solved(j.T @ j + prior, j.T @ r))
+    with np.errstate(over="ignore", invalid="ignore"):  # a loop that runs away along this motion tells nothing
+        gain = 0.5 * float(r @ r - (j.T @ r) @ solved(j.T @ j + prior, j.T @ r))
     return max(0.0, gain) if np.isfinite(gain) else 0.0
 
 
