@@ -387,4 +387,6 @@ def fit(
     tolerance: float = 1e-8,
     cancel: Cancel | None = None,
     goal: float = ...,
+    goal_within: int = 1,
+    radius: float = 10000.0,
 ) -> dict[str, Any]: ...

@@ -135,26 +135,21 @@ def test_the_start_from_believed_values_leaves_out_what_was_tuned(monkeypatch: p
 
 
 @pytest.mark.parametrize(
-    ("fits", "found", "asked"),
+    ("fit", "found"),
     [
-        ([fit_of(cost=51.0)], "sketch", 1),
-        ([fit_of(cost=49.0)], "settled", 1),
-        ([fit_of(cost=49.0, converged=False), fit_of(cost=30.0)], "settled", 2),
+        (fit_of(cost=51.0), "sketch"),
+        (fit_of(cost=49.0), "settled"),
     ],
 )
-def test_a_sketch_that_reaches_its_goal_is_finished(
-    fits: list[Any], found: str, asked: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_fit_that_reaches_its_goal_in_time_is_settled(fit: Any, found: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
     monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
-    fitter: Any = Fits(*fits)
+    fitter: Any = Fits(fit)
     made: Any = refits._fit(fitter, tuned(), {"b": {}}, None, pace=0.0)
     assert made[0] == found
-    assert len(fitter.asked) == asked
+    assert len(fitter.asked) == 1
     assert fitter.asked[0]["added"] == ("a", "b")
-    assert (fitter.asked[0]["max_iterations"], fitter.asked[0]["goal"]) == (SKETCH, 50.0)
-    if asked == 2:
-        assert (fitter.asked[1]["system"], fitter.asked[1]["max_iterations"]) == ("fitted", 40)
+    assert (fitter.asked[0]["goal"], fitter.asked[0]["goal_within"]) == (50.0, SKETCH)
 
 
 @pytest.mark.parametrize(

@@ -79,12 +79,20 @@ def test_a_fit_too_slow_for_its_goal_ends_early(joint: Any) -> None:
     """No inertia makes up for friction: no cost near 0 is in reach. One that is changes nothing."""
     tasks, free = joint.tasks(coulomb=0.5), joint.free("inertia")
     whole = joint.fit(tasks, free, tolerance=1e-14)
-    early = joint.fit(tasks, free, tolerance=1e-14, goal=0.0)
+    early = joint.fit(tasks, free, tolerance=1e-14, goal=0.0, goal_within=50)
     assert early["iterations"] < whole["iterations"]
     assert not early["converged"]
     assert "the cost was still falling" in early["message"]
-    reached = joint.fit(tasks, free, tolerance=1e-14, goal=1.01 * whole["cost"])
+    reached = joint.fit(tasks, free, tolerance=1e-14, goal=1.01 * whole["cost"], goal_within=50)
     assert reached["x"] == whole["x"]
+
+
+def test_a_fit_that_misses_its_goal_in_time_ends_there(joint: Any) -> None:
+    tasks, free = joint.tasks(coulomb=0.5), joint.free("inertia")
+    whole = joint.fit(tasks, free, tolerance=1e-14)
+    late = joint.fit(tasks, free, tolerance=1e-14, goal=1.000001 * whole["cost"], goal_within=1)
+    assert late["iterations"] == 1
+    assert late["cost"] > 1.000001 * whole["cost"]
 
 
 def test_a_start_at_a_bound_that_the_data_leave_is_left(joint: Any) -> None:

@@ -100,11 +100,12 @@ Places on_bound(const Problem& problem, const Vector& x, int side = 0) {
 }
 
 /// Keeps the best point, which Ceres forgets when a solve fails, and stops a solve that was cancelled, that moves along
-/// the same bounds, other than the `fixed` ones, for `patience` steps, or that is too slow to reach the goal.
+/// the same bounds, other than the `fixed` ones, for `patience` steps, or that is too slow to reach the goal. `done`:
+/// iterations of earlier solves.
 class Watch final : public ceres::IterationCallback {
  public:
   Watch(const Problem& fitted, const Options& given, const Vector& free, const Coordinates& states, const Places& fixed,
-        int steps)
+        int steps, int before)
       : problem(fitted),
         options(given),
         x(free),
@@ -112,21 +113,29 @@ class Watch final : public ceres::IterationCallback {
         held(fixed),
         best_x(free),
         best_z(states),
-        patience(steps) {}
+        patience(steps),
+        done(before) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (iteration.step_is_successful) {
       best_x = x, best_z = z;
       const Places now = on_bound(problem, x);
       along = now == bounds && now != held ? along + 1 : 0;
       bounds = now;
-      hopeless = iteration.iteration > 1 &&
-                 options.max_iterations * (progress + iteration.cost_change) < iteration.cost - options.goal;
-      progress = iteration.cost_change;
+      const double change = iteration.cost_change;
+      const double two = iteration.iteration > 1 ? progress + change : 2 * std::max(change, promised(iteration));
+      hopeless = iteration.iteration > 0 && options.goal_within * two < iteration.cost - options.goal;
+      progress = change;
+      cost = iteration.cost;
     }
+    hopeless = hopeless || (done + iteration.iteration >= options.goal_within && cost > options.goal);
     iterations = iteration.iteration;
     crawls = along >= patience;
     const bool ends = crawls || hopeless || (options.cancel && options.cancel->load());
     return ends ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+  /// What the derivatives promised of a step.
+  static double promised(const ceres::IterationSummary& step) {
+    return step.relative_decrease > 0 ? step.cost_change / step.relative_decrease : inf;
   }
   const Problem& problem;
   const Options& options;
@@ -135,8 +144,8 @@ class Watch final : public ceres::IterationCallback {
   const Places& held;
   Vector best_x;
   Coordinates best_z;
-  int patience, along = 0, iterations = 0;
-  double progress = 0;  ///< of the last step that lowered the cost
+  int patience, done, along = 0, iterations = 0;
+  double cost = 0, progress = 0;  ///< after the last step that lowered the cost, and by how much that did
   bool crawls = false, hopeless = false;
   Places bounds;
 };
@@ -174,8 +183,9 @@ ceres::Solver::Options solver_options(const Options& options, Vector& x, Coordin
   with.parameter_tolerance = options.tolerance;
   with.gradient_tolerance = 1e-12;
   with.line_search_interpolation_type = ceres::QUADRATIC;  // a cubic one needs derivatives wherever a step ends
-  with.max_num_line_search_step_size_iterations = 4;       // where that many do not help, a smaller trust region does
-  with.num_threads = 1;                                    // same bits; callers run several fits at once
+  with.max_num_line_search_step_size_iterations = 1;       // where that does not help, a smaller trust region does
+  with.initial_trust_region_radius = options.radius;
+  with.num_threads = 1;  // same bits; callers run several fits at once
   with.logging_type = ceres::SILENT;
   with.update_state_every_iteration = true;  // for Watch
   with.linear_solver_type = ceres::DENSE_QR;
@@ -318,7 +328,7 @@ Result settle(const Problem& problem, Predictions& predictions, const Options& o
     hold(held, x, solved);
     auto with = solver_options(options, x, z);
     with.max_num_iterations = options.max_iterations - done;
-    Watch watch(problem, options, x, z, held, patience);
+    Watch watch(problem, options, x, z, held, patience, done);
     with.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
     ceres::Solve(with, &solved, &summary);
@@ -365,6 +375,7 @@ Result fit(const Problem& problem, const Options& options) {
   require_sound(problem);
   require_within("max_iterations", options.max_iterations, 0, 1e6);
   require_within("tolerance", options.tolerance, 1e-15, 1.0);
+  require_within("radius", options.radius, 1e-6, 1e16);
   Predictions predictions = predictions_of(problem);
   Vector x = start_of_free(problem);
   Coordinates z = start_of_states(problem, predictions);

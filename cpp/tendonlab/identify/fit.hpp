@@ -64,7 +64,12 @@ struct Options {
   int max_iterations = 50;
   double tolerance = 1e-8;  ///< relative change of the cost at which the fit has converged
   const Cancel* cancel = nullptr;
-  double goal = inf;  ///< cost to get below; a fit that `max_iterations` steps at its pace would not bring there stops
+  /// The cost to get below within `goal_within` iterations. A fit that does not, or would not at its pace, stops.
+  double goal = inf;
+  int goal_within = 1;
+  /// Radius of the first trust region. 10 damps steps early, which costs that sticking bends need; a larger one is
+  /// faster near a smooth optimum.
+  double radius = 1e4;
 };
 
 /// Residuals of one experiment in noise standard deviations, with derivatives by the coordinates.

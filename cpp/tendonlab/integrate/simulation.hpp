@@ -133,6 +133,9 @@ class Simulation {
     bool past = false;   ///< it began beyond its guard, by more than rounding
   };
   static constexpr double past_guard = 1e-14;
+  /// Growth of the next step from which on this one is so exact that its dense output, which is less accurate inside
+  /// than at the end, may tell the state at an event.
+  static constexpr double exact_inside = 2.0;
   static constexpr double RETRY = 1.03;         ///< growth of the reach of explicit steps while none is taken
   static constexpr double stable = 2.5;         ///< rate times length up to which an explicit step damps (2.8 at most)
   static constexpr int STABLE_FOR = 64;         ///< explicit steps without events until stability is looked at again,
@@ -160,7 +163,7 @@ class Simulation {
               Record&& record) {
     const double length = tried.length;
     if (!tried.explicitly) explicit_reach *= RETRY;
-    if (first.stale || (first.mode >= 0 && first.share < 0.97))  // dense output is less accurate inside a step
+    if (first.stale || (first.mode >= 0 && first.share < 0.97 && wish < exact_inside))
       return aim(first, length, trajectory);
     retakes = false;
     const double taken = first.mode >= 0 ? first.share * length : length;
@@ -178,7 +181,7 @@ class Simulation {
     if (first.mode >= 0) {
       ++trajectory.events;
       pass_event(first);
-      h = 0.25 * length;
+      h = tried.explicitly ? length : 0.25 * length;
     }
     if (first.mode < 0 && t >= kink) pass_kink();
     arrive();

@@ -22,6 +22,7 @@ from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
 NUM_RESTARTS = 3
+RADIUS = 10.0  # of the first trust region: full steps across what sticks lead to worse optima
 BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
 
@@ -184,16 +185,18 @@ class Fitter:
         max_iterations: int = 25,
         tolerance: float = 1e-6,
         goal: float = math.inf,
+        goal_within: int = 1,
         solve: bool = True,
         known: bool = False,
     ) -> Fitted:
         """Fit `system` from its own values, with priors about the nominal ones, and the `initial` unknowns of each
-        experiment. `goal`: a cost; a fit too slow to get below ends early. `solve` False: only linearise there.
-        `known`: fit those unknowns alone."""
+        experiment. `goal`: a cost; a fit too slow to get below within `goal_within` iterations ends early. `solve`
+        False: only linearise there. `known`: fit those unknowns alone."""
         problem = pose(self.case, self.floor, system, added=() if known else added, initial=initial, known=known)
         if not solve:
             return problem.linearise()
-        return problem.solve(cancel=self.cancel, max_iterations=max_iterations, tolerance=tolerance, goal=goal)
+        options = {"max_iterations": max_iterations, "tolerance": tolerance, "goal": goal, "goal_within": goal_within}
+        return problem.solve(cancel=self.cancel, radius=RADIUS, **options)
 
     def settled(self, fit: Fitted) -> Fitted:
         """The fit with its runs reseated. Without repeats: again under the noise that it leaves itself, until that

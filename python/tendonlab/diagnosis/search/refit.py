@@ -14,6 +14,7 @@ from tendonlab.fitting.problem import Fitter, pose
 from tendonlab.fitting.starts import cooled
 from tendonlab.simulation.system import System
 
+MAX_ITERATIONS = 45
 SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to be finished
 BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
@@ -91,12 +92,8 @@ def _fit(
     system, initial = extended(base.system, effect), base.initial
     if from_nominal:
         system, initial = _cooled(fitter, base, system, added)
-    fit = fitter.fit(system, added=added, initial=initial, max_iterations=SKETCH, goal=goal)
-    if fit.cost > goal:
-        return fitter.releveled(fit)
-    if not fit.converged:
-        fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=40)
-    return fitter.settled(fit)
+    fit = fitter.fit(system, added=added, initial=initial, max_iterations=MAX_ITERATIONS, goal=goal, goal_within=SKETCH)
+    return fitter.releveled(fit) if fit.cost > goal else fitter.settled(fit)
 
 
 def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float) -> float:
