@@ -9,7 +9,7 @@ import pytest
 from tendonlab.diagnosis.search import contest
 from tendonlab.diagnosis.search.contest import Round, _worth_adding, probabilities
 from tendonlab.diagnosis.search.refit import _goal, strained
-from tendonlab.diagnosis.search.screen import Screened, _score, _starts, _unit
+from tendonlab.diagnosis.search.screen import Screened, _residuals_with, _score, _starts, _unit
 from tendonlab.diagnosis.search.screen import _Score as Score
 from tendonlab.diagnosis.search.trial import (
     DETECT,
@@ -21,7 +21,7 @@ from tendonlab.diagnosis.search.trial import (
 )
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
+from tendonlab.fitting.priors import AMPLITUDE_SD
 from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.prepare import Replay
 
@@ -282,10 +282,12 @@ def test_the_gain_of_a_candidate_is_that_of_least_squares_with_the_free_paramete
     (name,) = nominal.system.info.effect("actuation:offset").parameters
     p = nominal.system.info.parameter(name)
     unit, amplitude = _unit(fitter.case, p), 0.1
-    start = start_of(nominal.system, "actuation:offset", fitter.case.scales)
-    found = _score(fitter, nominal, "actuation:offset", p, start, amplitude)
+    values = {name: amplitude * unit}
+    (residuals,) = _residuals_with(fitter, nominal, "actuation:offset", [values])
+    assert not isinstance(residuals, str)
+    found = _score(fitter.case, nominal, p, amplitude, values, residuals)
 
-    moved = nominal.system.with_effects({"actuation:offset": {name: amplitude * unit}})
+    moved = nominal.system.with_effects({"actuation:offset": values})
     rows, residual = [], np.concatenate([b.residual for b in nominal.blocks])
     for t, i in enumerate(fitter.case.train):
         outputs = fitter.case.run(i, moved, nominal.initial[t])["outputs"]

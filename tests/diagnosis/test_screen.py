@@ -11,7 +11,6 @@ import tendonlab as tl
 from tendonlab import _core
 from tendonlab.diagnosis.search import screen
 from tendonlab.diagnosis.search.workshop import Workshop
-from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import start_of
@@ -63,10 +62,7 @@ def test_a_whole_friction_is_always_refitted_from_several_first_shapes() -> None
 def test_a_candidate_that_no_simulation_bears_starts_at_half_its_typical_size(
     fitter: Fitter, nominal: Fitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fails(*_: Any) -> None:
-        raise NumericalError("no")
-
-    monkeypatch.setattr(screen, "_score", fails)
+    monkeypatch.setattr(screen, "_residuals_with", lambda fitter, base, effect, tried: ["no" for _ in tried])
     found = screen.screen(fitter, nominal, "actuation:offset")
     assert (found.gain, found.visibility, found.simulated) == (0.0, 0.0, False)
     p = nominal.system.info.parameter("actuation_offset")

@@ -67,9 +67,6 @@ struct Options {
   /// The cost to get below within `goal_within` iterations. A fit that does not, or would not at its pace, stops.
   double goal = inf;
   int goal_within = 1;
-  /// Radius of the first trust region. 10 damps steps early, which costs that sticking bends need; a larger one is
-  /// faster near a smooth optimum.
-  double radius = 1e4;
 };
 
 /// Residuals of one experiment in noise standard deviations, with derivatives by the coordinates.

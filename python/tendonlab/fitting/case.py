@@ -139,6 +139,24 @@ class Case:
         settings = self.settings(ports=ports)
         return dict(_core.simulate(system.kind, values, active, self.started(i, own), list(seeds), settings))
 
+    def run_together(
+        self, i: int, systems: Sequence[System], own: Sequence[float] = ()
+    ) -> tuple[np.ndarray, list[str]]:
+        """Experiment i simulated by systems of one kind, several at a time: outputs (systems, outputs, samples), 0
+        where none was measured; and for each system "" or why its simulation failed."""
+        if not systems:
+            return np.zeros((0, *self.prepared[i].measured.shape)), []
+        start, measured = self.started(i, own), list(self.measured)
+        rows = [self.at(i, system, own) for system in systems]
+        values, active = np.array([v for v, _ in rows]), np.array([a for _, a in rows], dtype=np.uint8)
+        position, velocity = (np.tile(part, (len(systems), 1)) for part in (start.position, start.velocity))
+        seen = np.empty((len(systems), len(measured), self.prepared[i].measured.shape[1]))
+        kind, settings = self.system.kind, self.settings()
+        said = _core.simulate_many(kind, values, active, start, position, velocity, settings, measured, seen)
+        outputs = np.zeros((len(systems), *self.prepared[i].measured.shape))
+        outputs[:, measured] = seen
+        return outputs, said
+
     def task(self, i: int, whitening: _core.Whitening, system: System, *, tightness: float = 1.0) -> _core.Task:
         """Experiment i for the compiled fit of `system`, whose own parameters differ from run to run. `tightness`: by
         which the sd of the experiment's own unknowns is multiplied."""

@@ -22,7 +22,6 @@ from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
 NUM_RESTARTS = 3
-RADIUS = 10.0  # of the first trust region: full steps across what sticks lead to worse optima
 BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
 
@@ -195,8 +194,8 @@ class Fitter:
         problem = pose(self.case, self.floor, system, added=() if known else added, initial=initial, known=known)
         if not solve:
             return problem.linearise()
-        options = {"max_iterations": max_iterations, "tolerance": tolerance, "goal": goal, "goal_within": goal_within}
-        return problem.solve(cancel=self.cancel, radius=RADIUS, **options)
+        ends: dict[str, Any] = {"max_iterations": max_iterations, "tolerance": tolerance}
+        return problem.solve(cancel=self.cancel, goal=goal, goal_within=goal_within, **ends)
 
     def settled(self, fit: Fitted) -> Fitted:
         """The fit with its runs reseated. Without repeats: again under the noise that it leaves itself, until that

@@ -5,13 +5,13 @@ of the change in its residuals gives the gain that a refit may be expected to br
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tendonlab.diagnosis.search.swap import can_replace, extended
-from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, solved
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
@@ -93,16 +93,16 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
         return _whole(case, base, effect, rows)
     start = start_of(base.system, effect, case.scales)
     shapes = [p.name for p in rows if p.purpose == "shape"]
-    scores: list[_Score] = []
-    trouble = ""
-    for factor in SHAPES if shapes else (1.0,):
-        shaped = {**start, **{name: start[name] * factor for name in shapes[:1]}}
-        for p in (p for p in rows if p.amplitude):
-            for amplitude in AMPLITUDES:
-                try:
-                    scores.append(_score(fitter, base, effect, p, shaped, amplitude))
-                except NumericalError as failed:
-                    trouble = str(failed)
+    tried = [
+        (p, amplitude, {**start, **shaped, p.name: amplitude * _unit(case, p)})
+        for factor in (SHAPES if shapes else (1.0,))
+        for shaped in ({name: start[name] * factor for name in shapes[:1]},)
+        for p in rows if p.amplitude
+        for amplitude in AMPLITUDES
+    ]  # fmt: skip
+    seen = _residuals_with(fitter, base, effect, [values for _, _, values in tried])
+    scores = [_score(case, base, *of, r) for of, r in zip(tried, seen, strict=True) if not isinstance(r, str)]
+    trouble = next((r for r in reversed(seen) if isinstance(r, str)), "")
     if not scores:
         typical = {p.name: AMPLITUDES[-1] * _unit(case, p) for p in rows if p.amplitude}
         return Screened(effect, 0.0, ({**start, **typical},), 0.0, trouble)
@@ -129,13 +129,11 @@ def _starts(scores: list[_Score], shape: list[str]) -> tuple[dict[str, float], .
 
 
 def _score(
-    fitter: Fitter, base: Fitted, effect: str, p: ParameterInfo, shaped: dict[str, float], amplitude: float
+    case: Case, base: Fitted, p: ParameterInfo, amplitude: float, values: dict[str, float], residuals: np.ndarray
 ) -> _Score:
-    unit = _unit(fitter.case, p)
-    values = {**shaped, p.name: amplitude * unit}
-    slope, curvature = _beyond_imitation(
-        base, (_residuals_with(fitter, base, effect, values) - base.rows[0]) / amplitude
-    )
+    """`residuals` at these `values`, where the amplitude p is `amplitude` of its unit."""
+    unit = _unit(case, p)
+    slope, curvature = _beyond_imitation(base, (residuals - base.rows[0]) / amplitude)
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
     at = min(max(at, p.lower / unit), p.upper / unit)
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
@@ -143,10 +141,17 @@ def _score(
     return _Score(gain, {**values, p.name: start}, 0.5 * curvature)
 
 
-def expected_gain(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> float:
-    """Nats that `effect` brings at these values, once the free parameters follow."""
-    slope, curvature = _beyond_imitation(base, _residuals_with(fitter, base, effect, values) - base.rows[0])
-    return -slope - 0.5 * curvature
+def expected_gains(fitter: Fitter, base: Fitted, effect: str, tried: Sequence[dict[str, float]]) -> list[float]:
+    """Nats that `effect` brings at each of these values, once the free parameters follow; -inf where no simulation
+    bears them."""
+
+    def gain(residuals: np.ndarray | str) -> float:
+        if isinstance(residuals, str):
+            return -math.inf
+        slope, curvature = _beyond_imitation(base, residuals - base.rows[0])
+        return -slope - 0.5 * curvature
+
+    return [gain(residuals) for residuals in _residuals_with(fitter, base, effect, tried)]
 
 
 def _beyond_imitation(base: Fitted, direction: np.ndarray) -> tuple[float, float]:
@@ -164,11 +169,19 @@ def _unit(case: Case, p: ParameterInfo) -> float:
     return (case.scales.get(p.element or "") or next(iter(case.scales.values()))).of(p.dimension) * abs(p.typical)
 
 
-def _residuals_with(fitter: Fitter, base: Fitted, effect: str, values: dict[str, float]) -> np.ndarray:
-    """Whitened residuals of the training experiments at `base` with `effect` at `values`, as they count."""
-    case, system = fitter.case, extended(base.system, {effect: values})
-    parts = []
-    for i, own, marginal in zip(case.train, base.initial, base.marginals, strict=True):
-        outputs = case.run(i, system, own)["outputs"]
-        parts.append(marginal.residual(fitter.whitening[i].residual(outputs)))
-    return np.concatenate(parts)
+def _residuals_with(
+    fitter: Fitter, base: Fitted, effect: str, tried: Sequence[dict[str, float]]
+) -> list[np.ndarray | str]:
+    """Whitened residuals of the training experiments at `base` with `effect` at each of these values, as they count; or
+    why it cannot be simulated there."""
+    systems = [extended(base.system, {effect: values}) for values in tried]
+    parts: list[list[np.ndarray]] = [[] for _ in systems]
+    trouble = ["" for _ in systems]
+    for i, own, marginal in zip(fitter.case.train, base.initial, base.marginals, strict=True):
+        able = [k for k, why in enumerate(trouble) if not why]
+        outputs, said = fitter.case.run_together(i, [systems[k] for k in able], own)
+        for k, seen, why in zip(able, outputs, said, strict=True):
+            trouble[k] = why
+            if not why:
+                parts[k].append(marginal.residual(fitter.whitening[i].residual(seen)))
+    return [why or np.concatenate(rows) for why, rows in zip(trouble, parts, strict=True)]

@@ -3,13 +3,11 @@ it."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 
-from tendonlab.diagnosis.search.screen import Screened, expected_gain
-from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.diagnosis.search.screen import Screened, expected_gains
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import ParameterInfo
@@ -36,12 +34,12 @@ def whole(fitter: Fitter, base: Fitted, effect: str, start: Mapping[str, float],
     best, base = dict(start), base.counted()
     if not shapes or not any(p.purpose == "share" for p in rows):
         return best
-    gain = _gain(fitter, base, effect, best)
+    (gain,) = expected_gains(fitter, base, effect, [best])
     if gain >= KEPT * promised:
         return best
     for factors in (GRID, NEAR):
         tried = [best | _scaled(best, shapes, by) for by in product(factors, repeat=len(shapes))]
-        gains = [_gain(fitter, base, effect, values) for values in tried]
+        gains = expected_gains(fitter, base, effect, tried)
         if max(gains) > gain:
             gain, best = max(gains), tried[gains.index(max(gains))]
     return best
@@ -50,10 +48,3 @@ def whole(fitter: Fitter, base: Fitted, effect: str, start: Mapping[str, float],
 def _scaled(values: Mapping[str, float], shapes: Sequence[ParameterInfo], by: Sequence[float]) -> dict[str, float]:
     pairs = zip(shapes, by, strict=True)
     return {p.name: min(max(values[p.name] * factor, p.lower), p.upper) for p, factor in pairs}
-
-
-def _gain(fitter: Fitter, base: Fitted, effect: str, values: Mapping[str, float]) -> float:
-    try:
-        return expected_gain(fitter, base, effect, dict(values))
-    except (NumericalError, ParameterError):
-        return -math.inf
