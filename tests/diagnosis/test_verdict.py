@@ -140,9 +140,18 @@ def selected(
     left: float = 9.0,
     none: float = 0.01,
     repeated: bool = True,
+    whitened: float = 2.0,
 ) -> Verdict:
     """The verdict where one effect was selected."""
-    levels = Levels(nominal=nominal, tuned=tuned, refitted=tuned, explained=explained, left=left, repeated=repeated)
+    levels = Levels(
+        nominal=nominal,
+        tuned=tuned,
+        refitted=tuned,
+        explained=explained,
+        left=left,
+        repeated=repeated,
+        whitened=whitened,
+    )
     return decide((contest((), "a", a=1.0 - none, none=none),), ("a",), levels)
 
 
@@ -158,6 +167,16 @@ def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess_o
     assert found.verdict == verdict
     assert max(found.probability, key=lambda name: found.probability[name]) == verdict
     assert sum(found.probability.values()) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("explained", "whitened", "verdict"),
+    [(0.61, 1.05, "effect"), (0.59, 1.05, "unknown_effect"), (0.61, 1.07, "unknown_effect")],
+)
+def test_three_fifths_are_enough_with_repeats_where_training_experiments_end_at_the_floor(
+    explained: float, whitened: float, verdict: str
+) -> None:
+    assert selected(explained=explained, whitened=whitened).verdict == verdict
 
 
 @pytest.mark.parametrize("explained", [None, 0.1])

@@ -118,6 +118,7 @@ def _levels(
         explained=heldout.explained(stages["refitted"], stages["with_effect"], floor) if search.selected else None,
         left=heldout.level(stages["with_effect"], floor),
         repeated=floor.repeated,
+        whitened=final.mean_square,
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
         followed=followed(case, final) if doubtful else 0.0,
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,

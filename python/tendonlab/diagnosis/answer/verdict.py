@@ -17,7 +17,10 @@ LOWERED = 0.05  # share of the mean square that tuning must remove to have gaine
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
-EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
+EXPLAINED_OF_ASSUMED = (
+    0.6  # the same where the floor is assumed: slow noise of a sensor lies above it; or where nothing
+)
+AT_FLOOR = 1.06  # is left of training experiments, whitened: repeats of one motion tell little of how others repeat
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
 SOFT, SAME_GROUP = 0.05, 0.2
@@ -31,11 +34,11 @@ class Levels:
     refitted simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out
     experiments, which decides where nothing repeats; where runs do, it must not be far. `explained`: share of the
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
-    them on held-out experiments. `repeated`: whether the floor comes from repeats. Where none does, `trained`: of the
-    final model on the training experiments, in units of what run-to-run friction may leave, and `followed`: the share
-    of that which follows the motion or drifts. Where nothing was selected, `scattered`: by how much friction differs
-    from run to run, where nothing repeats; and `drifted`: the chance of a trend of friction over the session, 1 where
-    there is none that matters."""
+    them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
+    from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
+    run-to-run friction may leave, and `followed`: the share of that which follows the motion or drifts. Where nothing
+    was selected, `scattered`: by how much friction differs from run to run, where nothing repeats; and `drifted`: the
+    chance of a trend of friction over the session, 1 where there is none that matters."""
 
     nominal: float
     tuned: float
@@ -43,6 +46,7 @@ class Levels:
     explained: float | None
     left: float
     repeated: bool
+    whitened: float = np.inf
     trained: float = 1.0
     followed: float = 0.0
     scattered: float = 0.0
@@ -73,7 +77,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     room = _room(levels)
     is_missing = levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR)
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
-    needed = EXPLAINED if levels.repeated else EXPLAINED_OF_ASSUMED
+    needed = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     spare = min(_noise_room(levels), max((levels.explained or 0.0) - needed, NO_GAP - levels.left))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
