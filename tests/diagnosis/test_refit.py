@@ -46,7 +46,7 @@ def test_where_no_fit_succeeds_the_reason_is_told(nominal: Fitted, monkeypatch: 
     with pytest.raises(NumericalError, match=r"^c$"):
         refits.refit(nothing, nothing, Screened("x", 1.0, ({}, {}), 1.0), pace=0.0)
     assert not outcomes
-    outcomes = [with_evidence(nominal, math.nan)] * 2
+    outcomes = [(with_evidence(nominal, math.nan), None)] * 2
     with pytest.raises(NumericalError, match="derivatives"):
         refits.refit(nothing, nothing, Screened("x", 1.0, ({},), 1.0), pace=0.0)
 
@@ -134,22 +134,42 @@ def test_the_start_from_believed_values_leaves_out_what_was_tuned(monkeypatch: p
     assert posed == {"system": {"inertia": 2.0}, "added": ("a", "b")}
 
 
-@pytest.mark.parametrize(
-    ("fit", "found"),
-    [
-        (fit_of(cost=51.0), "sketch"),
-        (fit_of(cost=49.0), "settled"),
-    ],
-)
-def test_a_fit_that_reaches_its_goal_in_time_is_settled(fit: Any, found: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("cost", "is_whole"), [(51.0, False), (49.0, True)])
+def test_a_fit_that_misses_its_goal_is_a_sketch(cost: float, is_whole: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
     monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
+    fit = fit_of(cost=cost)
     fitter: Any = Fits(fit)
-    made: Any = refits._fit(fitter, tuned(), {"b": {}}, None, pace=0.0)
-    assert made[0] == found
+    worth, whole = refits._fit(fitter, tuned(), {"b": {}}, None, pace=0.0)
+    assert (worth, whole) == (("sketch", fit), fit if is_whole else None)
     assert len(fitter.asked) == 1
     assert fitter.asked[0]["added"] == ("a", "b")
     assert (fitter.asked[0]["goal"], fitter.asked[0]["goal_within"]) == (50.0, SKETCH)
+
+
+@pytest.mark.parametrize(
+    ("worths", "whole", "settled"),
+    [([1.0, 2.0], [True, True], 2.0), ([2.0, 1.0], [True, True], 2.0), ([2.0, 1.0], [False, True], None),
+     ([1.0, 2.0], [False, True], 2.0)],
+)  # fmt: skip
+def test_only_the_best_start_is_settled(
+    worths: list[float], whole: list[bool], settled: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fits = [SimpleNamespace(evidence=worth, mean_square=1.0) for worth in worths]
+    for fit in fits:
+        fit.counted = lambda fit=fit: fit
+    tries = iter(zip(fits, whole, strict=True))
+
+    def tried(*_: Any, **__: Any) -> Any:
+        fit, is_whole = next(tries)
+        return fit, fit if is_whole else None
+
+    monkeypatch.setattr(refits, "_fit", tried)
+    monkeypatch.setattr(refits, "strained", lambda *_: False)
+    fitter: Any = SimpleNamespace(settled=lambda fit: ("settled", fit.evidence))
+    base: Any = None
+    found: Any = refits.refit(fitter, base, Screened("b", 1.0, ({}, {}), 1.0), pace=0.0)
+    assert found == (("settled", settled) if settled is not None else fits[0])
 
 
 @pytest.mark.parametrize(
@@ -165,7 +185,7 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
 
     def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
         tried.append(from_nominal)
-        return SimpleNamespace(mean_square=left, evidence=float(len(tried)))
+        return SimpleNamespace(mean_square=left, evidence=float(len(tried))), None
 
     monkeypatch.setattr(refits, "_fit", fit)
     monkeypatch.setattr(refits, "strained", lambda *_: pulled)
@@ -181,7 +201,7 @@ def test_a_candidate_far_behind_others_is_not_fitted_from_nominal_values(monkeyp
 
     def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
         tried.append(from_nominal)
-        return SimpleNamespace(mean_square=5.0, evidence=1.0)
+        return SimpleNamespace(mean_square=5.0, evidence=1.0), None
 
     monkeypatch.setattr(refits, "_fit", fit)
     monkeypatch.setattr(refits, "strained", lambda *_: True)

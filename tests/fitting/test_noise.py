@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 
 from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError
-from tendonlab.fitting.floor import friction_groups
+from tendonlab.fitting.floor import LARGEST, _run_to_run, friction_groups
 from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, sensor_noise
 from tendonlab.simulation.prepare import Replay, prepare
 
@@ -112,6 +112,11 @@ def test_friction_of_an_element_scales_together(twin_case: Any) -> None:
     assert {"joint_coulomb", "joint_static_excess"} < added[1]
     assert len(added) == 2
     assert not {"motor_level_asymmetry", "joint_level_asymmetry"} & (added[0] | added[1])  # shares of what scales
+
+
+def test_runs_that_do_not_repeat_at_all_are_not_put_down_to_friction() -> None:
+    assert _run_to_run([np.array([40.0]), np.array([-30.0])]) == LARGEST
+    assert 0.0 < _run_to_run([np.array([0.02]), np.array([-0.01])]) < 0.02
 
 
 def test_friction_that_scales_from_run_to_run_stays_within_its_bounds(twin_case: Any) -> None:

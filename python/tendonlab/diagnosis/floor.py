@@ -23,7 +23,8 @@ def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
     under noise as large as the misfit: so little noise believes a wrong model against all that is stated."""
     fitter = Fitter(case, white(case.noise), cancel)
     fit = fitter.fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
-    fit = pose(case, fitter.floor, fit.system, initial=fit.initial).reseated(fit, cancel)
+    problem = pose(case, fitter.floor, fit.system, initial=fit.initial)
+    fit = problem.reseated(fit, cancel, max_iterations=ROUGH, tolerance=NEARLY)
     return cooled(pose(case, fitter.floor, case.system), cancel).linearise() if any(fit.at_bound) else fit
 
 

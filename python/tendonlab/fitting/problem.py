@@ -22,6 +22,7 @@ from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
 NUM_RESTARTS = 3
+MAX_ITERATIONS, NEARLY = 25, 1e-6  # of a fit of a diagnosis
 RADIUS = 100.0  # of the first trust region: what sticks bends the cost, and longer steps fail several times first
 BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
@@ -62,10 +63,10 @@ class Problem:
         free = tuple(f for f in self.free if f.name != name)
         return replace(self, system=self.system.with_parameters({name: value}), free=free)
 
-    def reseated(self, fit: Fitted, cancel: _core.Cancel, *, steps: int = 0) -> Fitted:
+    def reseated(self, fit: Fitted, cancel: _core.Cancel, *, steps: int = 0, **options: Any) -> Fitted:
         """The `fit` of this problem, again with the initial states of some runs found anew from what is believed of
         them: early steps of a fit may leave a run that starts at rest in a place where stiction holds it. `steps`:
-        iterations for these states."""
+        iterations for these states; `options`: of the new fit, as `solve` has them."""
         for _ in range(NUM_RESTARTS):
             if cancel.is_set() or not any(len(run.own) for run in fit.runs):
                 return fit
@@ -75,7 +76,7 @@ class Problem:
             if not any(better):
                 return fit
             own = [new if b else old for new, old, b in zip(fresh.initial, fit.initial, better, strict=True)]
-            again = self.at(fit.system, own).solve(cancel=cancel)
+            again = self.at(fit.system, own).solve(cancel=cancel, **options)
             if not again.cost < fit.cost:
                 return fit
             fit = again
@@ -182,8 +183,8 @@ class Fitter:
         *,
         added: Sequence[str] = (),
         initial: Sequence[Sequence[float]] = (),
-        max_iterations: int = 25,
-        tolerance: float = 1e-6,
+        max_iterations: int = MAX_ITERATIONS,
+        tolerance: float = NEARLY,
         goal: float = math.inf,
         goal_within: int = 1,
         solve: bool = True,
@@ -218,7 +219,7 @@ class Fitter:
         """The fit, again where some runs fit better from the initial states that are believed of them."""
         floor = replace(self.floor, sd=fit.levels.tolist())
         problem = pose(self.case, floor, fit.system, added=fit.added, initial=fit.initial)
-        return problem.reseated(fit, self.cancel)
+        return problem.reseated(fit, self.cancel, max_iterations=MAX_ITERATIONS, tolerance=NEARLY)
 
     def releveled(self, fit: Fitted) -> Fitted:
         """Without repeats: the fit as it is, under the noise that it leaves itself."""

@@ -26,18 +26,21 @@ Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by e
 
 
 def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Fitted:
-    """The best fit of `base` with the candidate over its starts.
+    """The best fit of `base` with the candidate over its starts, settled unless it lies far behind.
 
     `pace`: evidence of a rival, all rows counted; a fit that lies far behind is not finished. Raises NumericalError
     where no fit succeeds, with the reason that the last one failed for."""
     best: Fitted | None = None
+    to_settle: Fitted | None = None
     trouble: NumericalError | ParameterError = NumericalError(candidate.trouble)
 
     def attempt(start: Mapping[str, float], *, from_nominal: bool = False) -> None:
-        nonlocal best, trouble
+        nonlocal best, to_settle, trouble
         try:
-            fit = _fit(fitter, base, {candidate.effect: start}, best, pace=pace, from_nominal=from_nominal)
-            best = more_evident(best, fit)
+            found, whole = _fit(fitter, base, {candidate.effect: start}, best, pace=pace, from_nominal=from_nominal)
+            better = more_evident(best, found)
+            to_settle = to_settle if better is best else whole
+            best = better
         except (NumericalError, ParameterError) as failed:
             trouble = failed
 
@@ -49,7 +52,7 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
         attempt(candidate.starts[0], from_nominal=True)
     if best is None:
         raise NumericalError(str(trouble))
-    return best
+    return best if to_settle is None else fitter.settled(to_settle)
 
 
 def more_evident(best: Fitted | None, fit: Fitted) -> Fitted:
@@ -82,8 +85,9 @@ def _fit(
     *,
     pace: float,
     from_nominal: bool = False,
-) -> Fitted:
-    """`base` refitted with `effect`; only a sketch where it lies far behind the rival or `best`.
+) -> tuple[Fitted, Fitted | None]:
+    """`base` refitted with `effect`: what the fit is worth under the noise that it leaves, and the fit itself, which is
+    None where it is only a sketch: far behind the rival or `best`.
 
     `from_nominal`: start at the nominal values of the simulator instead of the tuned ones. Raises NumericalError or
     ParameterError where that fails."""
@@ -93,7 +97,7 @@ def _fit(
     if from_nominal:
         system, initial = _cooled(fitter, base, system, added)
     fit = fitter.fit(system, added=added, initial=initial, max_iterations=MAX_ITERATIONS, goal=goal, goal_within=SKETCH)
-    return fitter.releveled(fit) if fit.cost > goal else fitter.settled(fit)
+    return fitter.releveled(fit), fit if fit.cost <= goal else None
 
 
 def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float) -> float:
