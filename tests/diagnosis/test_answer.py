@@ -34,12 +34,13 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
-    final = SimpleNamespace(over_scatter=lambda groups: 5.0 * groups)
+    final = SimpleNamespace(mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
     search: Any = SimpleNamespace(tuned=tuned, final=final, selected=("x",), fitter=fitter)
     found = _levels(search, nominal, stages, floor, None)
     assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
     assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
     assert found.explained == pytest.approx(5.0 / 8.0)
+    assert found.whitened == 1.04
     assert (found.trained, found.followed, found.scattered) == ((1.0, 0.0, 0.0) if repeated else (10.0, 0.25, 0.0))
     search.selected, search.final = (), tuned
     none = _levels(search, nominal, stages, floor, Drift("joint", -0.1, 0.001))

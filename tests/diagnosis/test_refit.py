@@ -166,10 +166,10 @@ def test_only_the_best_start_is_settled(
 
     monkeypatch.setattr(refits, "_fit", tried)
     monkeypatch.setattr(refits, "strained", lambda *_: False)
-    fitter: Any = SimpleNamespace(settled=lambda fit: ("settled", fit.evidence))
+    fitter: Any = SimpleNamespace(settled=lambda fit: SimpleNamespace(evidence=10.0 + fit.evidence))
     base: Any = None
     found: Any = refits.refit(fitter, base, Screened("b", 1.0, ({}, {}), 1.0), pace=0.0)
-    assert found == (("settled", settled) if settled is not None else fits[0])
+    assert found.evidence == (10.0 + settled if settled is not None else fits[0].evidence)
 
 
 @pytest.mark.parametrize(
@@ -194,6 +194,17 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
     found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, "" if simulated else "stopped"), pace=0.0)
     assert tried == nominal
     assert found is not None
+
+
+@pytest.mark.parametrize("fails", [True, False])
+def test_where_settling_fails_the_fit_before_counts(fails: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    fit = SimpleNamespace(evidence=1.0, mean_square=1.0)
+    monkeypatch.setattr(refits, "_fit", lambda *_, **__: (fit, fit))
+    monkeypatch.setattr(refits, "strained", lambda *_: False)
+    exploded = SimpleNamespace(evidence=-math.inf)
+    fitter: Any = SimpleNamespace(settled=lambda _: raised(NumericalError("diverged") if fails else exploded))
+    base: Any = None
+    assert refits.refit(fitter, base, Screened("b", 1.0, ({},), 1.0), pace=0.0) is fit
 
 
 def test_a_candidate_far_behind_others_is_not_fitted_from_nominal_values(monkeypatch: pytest.MonkeyPatch) -> None:

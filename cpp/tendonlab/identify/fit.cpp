@@ -122,7 +122,7 @@ class Watch final : public ceres::IterationCallback {
       along = now == bounds && now != held ? along + 1 : 0;
       bounds = now;
       const double change = iteration.cost_change;
-      const double two = iteration.iteration > 1 ? progress + change : 2 * std::max(change, promised(iteration));
+      const double two = progress > 0 ? progress + change : 2 * std::max(change, promised(iteration));
       hopeless = iteration.iteration > 0 && options.goal_within * two < iteration.cost - options.goal;
       progress = change;
       cost = iteration.cost;

@@ -170,11 +170,11 @@ def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.nda
 
 
 def _run_to_run(coefficients: list[np.ndarray]) -> float:
-    """Relative sd of friction from run to run, shrunk to the default; at most what is plausible: runs that do not repeat
-    at all, as in a limit cycle, differ by more than friction."""
+    """Relative sd of friction from run to run, shrunk to the default; at most what is plausible: runs that do not
+    repeat at all, as in a limit cycle, differ by more than friction."""
     squares = np.concatenate([np.square(c) for c in coefficients]) if coefficients else np.zeros(0)
     total = RUN_TO_RUN_WEIGHT * RUN_TO_RUN**2 + float(np.sum(squares))
-    return min(LARGEST, float(np.sqrt(total / (RUN_TO_RUN_WEIGHT + len(squares)))))
+    return min(float(np.sqrt(total / (RUN_TO_RUN_WEIGHT + len(squares)))), LARGEST)
 
 
 def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:

@@ -93,7 +93,8 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
             (
                 share,
                 "of the excess error explained, as mean square over the floor",
-                "“effect identified” needs 75 % (60 % without repeats), or an error at the floor",
+                "“effect identified” needs 75 % (60 % without repeats, or with training runs at the floor), or an "
+                "error at the floor",
             )
         )
     return facts

@@ -17,10 +17,8 @@ LOWERED = 0.05  # share of the mean square that tuning must remove to have gaine
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
-EXPLAINED_OF_ASSUMED = (
-    0.6  # the same where the floor is assumed: slow noise of a sensor lies above it; or where nothing
-)
-AT_FLOOR = 1.06  # is left of training experiments, whitened: repeats of one motion tell little of how others repeat
+EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
+AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
 SOFT, SAME_GROUP = 0.05, 0.2

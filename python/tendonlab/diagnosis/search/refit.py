@@ -52,7 +52,13 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
         attempt(candidate.starts[0], from_nominal=True)
     if best is None:
         raise NumericalError(str(trouble))
-    return best if to_settle is None else fitter.settled(to_settle)
+    if to_settle is None:
+        return best
+    try:
+        settled = fitter.settled(to_settle)
+    except (NumericalError, ParameterError):
+        return best
+    return settled if math.isfinite(settled.evidence) else best
 
 
 def more_evident(best: Fitted | None, fit: Fitted) -> Fitted:

@@ -13,7 +13,7 @@ from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
 from tendonlab.diagnosis.search.trial import Trial, counted_alike
-from tendonlab.errors import NumericalError
+from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
@@ -106,7 +106,7 @@ def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) ->
     try:
         started = candidate if candidate.far_behind else with_whole_shares(fitter, base, candidate)
         fit = refit(fitter, base, started, pace=pace)
-    except NumericalError as reason:
+    except (NumericalError, ParameterError) as reason:
         return Failed(candidate.effect, str(reason))
     return Trial.of(candidate.effect, fit, base)
 
