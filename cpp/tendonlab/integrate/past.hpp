@@ -1,5 +1,6 @@
 #pragma once
 // The past of the looped axis, for loops with a delay: the dense output of the steps taken, as far back as needed.
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <tuple>
@@ -45,10 +46,7 @@ class Past {
     }
     if (segment_read < 0 || plain(then) <= beginning || pieces.empty())
       return {lift<S>(first_position), lift<S>(first_velocity)};
-    auto p = pieces.rbegin();  // never a piece beyond the kink that the stepper landed on
-    while (p + 1 != pieces.rend() &&
-           (p->segment > segment_read || (p->start > plain(then) && (p + 1)->segment == p->segment)))
-      ++p;
+    const auto p = piece_at(plain(then));
     const S s = (then - p->start) * (1.0 / p->h);
     return {p->position.template at<S>(s), p->velocity.template at<S>(s)};
   }
@@ -67,6 +65,17 @@ class Past {
     int segment;  ///< how many kinks lie before it
     Curve position, velocity;
   };
+  /// The piece that holds `then`, of the last stretch without a kink that readings have reached: never one beyond the
+  /// kink that the stepper landed on. A loop that runs away has thousands of them.
+  auto piece_at(double then) const {
+    const auto end =
+        std::partition_point(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.segment <= segment_read; });
+    if (end == pieces.begin()) return end;
+    const int segment = std::prev(end)->segment;
+    const auto begin = std::partition_point(pieces.begin(), end, [&](const Piece& p) { return p.segment < segment; });
+    const auto after = std::partition_point(begin, end, [&](const Piece& p) { return p.start <= then; });
+    return after == begin ? begin : std::prev(after);
+  }
   std::deque<Piece> pieces;
   T first_position{}, first_velocity{}, acceleration{}, jerk{};
   double beginning = 0, present = 0;
