@@ -388,5 +388,4 @@ def fit(
     cancel: Cancel | None = None,
     goal: float = ...,
     goal_within: int = 1,
-    radius: float = 10000.0,
 ) -> dict[str, Any]: ...

@@ -242,24 +242,24 @@ void bind_identify(py::module_& module) {
       [](const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
          const std::vector<Task>& tasks, const std::vector<Free>& free, const integrate::Settings& settings,
          const std::vector<std::vector<double>>& initial, int max_iterations, double tolerance, const Cancel* cancel,
-         double goal, int goal_within, double radius) {
+         double goal, int goal_within) {
         const auto problem = make_problem(kind, values, active, tasks, free, initial, settings);
         return without_gil([&] {
-          return identify::fit(
-              problem, {max_iterations, tolerance, cancel ? &cancel->flag : nullptr, goal, goal_within, radius});
+          return identify::fit(problem,
+                               {max_iterations, tolerance, cancel ? &cancel->flag : nullptr, goal, goal_within});
         });
       },
       py::arg("kind"), py::arg("values"), py::arg("active"), py::arg("tasks"), py::arg("free"), py::arg("settings"),
       py::kw_only(), py::arg("initial") = std::vector<std::vector<double>>(), py::arg("max_iterations") = 50,
       py::arg("tolerance") = 1e-8, py::arg("cancel").none(true) = py::none(), py::arg("goal") = inf,
-      py::arg("goal_within") = 1, py::arg("radius") = 1e4,
+      py::arg("goal_within") = 1,
       "Minimises half the sum of squared whitened residuals and priors. Returns a dict: values (all parameters), x\n"
       "(coordinates of the free ones), initial (free states, logarithms of factors, a list a task), cost, prior_cost, "
       "converged, message,\n"
       "iterations, at_bound; per task: residuals (rows,), jacobian (rows, free) by x, jacobian_initial (rows, states) "
       "by\n"
       "(state - prior mean) / sd. Stops early where the cost is not below `goal` after `goal_within` iterations, or\n"
-      "would not be after as many like the last two. `radius`: of the first trust region. Raises NumericalError if a "
+      "would not be after as many like the last two. Raises NumericalError if a "
       "simulation fails at the start.");
 }
 }  // namespace tendonlab::bindings

@@ -184,8 +184,7 @@ ceres::Solver::Options solver_options(const Options& options, Vector& x, Coordin
   with.gradient_tolerance = 1e-12;
   with.line_search_interpolation_type = ceres::QUADRATIC;  // a cubic one needs derivatives wherever a step ends
   with.max_num_line_search_step_size_iterations = 1;       // where that does not help, a smaller trust region does
-  with.initial_trust_region_radius = options.radius;
-  with.num_threads = 1;  // same bits; callers run several fits at once
+  with.num_threads = 1;                                    // same bits; callers run several fits at once
   with.logging_type = ceres::SILENT;
   with.update_state_every_iteration = true;  // for Watch
   with.linear_solver_type = ceres::DENSE_QR;
@@ -375,7 +374,6 @@ Result fit(const Problem& problem, const Options& options) {
   require_sound(problem);
   require_within("max_iterations", options.max_iterations, 0, 1e6);
   require_within("tolerance", options.tolerance, 1e-15, 1.0);
-  require_within("radius", options.radius, 1e-6, 1e16);
   Predictions predictions = predictions_of(problem);
   Vector x = start_of_free(problem);
   Coordinates z = start_of_states(problem, predictions);

@@ -67,7 +67,6 @@ struct Options {
   /// The cost to get below within `goal_within` iterations. A fit that does not, or would not at its pace, stops.
   double goal = inf;
   int goal_within = 1;
-  double radius = 1e4;  ///< of the first trust region; about 100 where sticking bends the cost
 };
 
 /// Residuals of one experiment in noise standard deviations, with derivatives by the coordinates.

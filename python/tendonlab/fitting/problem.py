@@ -23,7 +23,6 @@ from tendonlab.simulation.system import System
 
 NUM_RESTARTS = 3
 MAX_ITERATIONS, NEARLY = 25, 1e-6  # of a fit of a diagnosis
-RADIUS = 100.0  # of the first trust region: what sticks bends the cost, and longer steps fail several times first
 BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
 
@@ -197,7 +196,7 @@ class Fitter:
         if not solve:
             return problem.linearise()
         ends: dict[str, Any] = {"max_iterations": max_iterations, "tolerance": tolerance}
-        return problem.solve(cancel=self.cancel, radius=RADIUS, goal=goal, goal_within=goal_within, **ends)
+        return problem.solve(cancel=self.cancel, goal=goal, goal_within=goal_within, **ends)
 
     def settled(self, fit: Fitted) -> Fitted:
         """The fit with its runs reseated. Without repeats: again under the noise that it leaves itself, until that
