@@ -146,7 +146,8 @@ def test_gap_that_is_crossed_at_once_costs_a_few_steps(gap, tolerance):
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 1e-7])
 def test_derivatives_do_not_change_the_run(tolerance):
-    """Differentiating is carried along: the same steps, but for the rounding of their estimated errors."""
+    """Differentiating is carried along: the same steps, but for the rounding of their estimated errors, which moves
+    values by a fraction of what a step may err."""
     system = CASES["stick and slip"][0]
     plain = run(system, T, COMMAND, tolerance=tolerance)
     carried = run(system, T, COMMAND, tolerance=tolerance, by=["motor_inertia", "joint_coulomb"])

@@ -259,7 +259,6 @@ void bind_identify(py::module_& module) {
       "iterations, at_bound; per task: residuals (rows,), jacobian (rows, free) by x, jacobian_initial (rows, states) "
       "by\n"
       "(state - prior mean) / sd. Stops early where the cost is not below `goal` after `goal_within` iterations, or\n"
-      "would not be after as many like the last two. Raises NumericalError if a "
-      "simulation fails at the start.");
+      "would not be after as many like the last two. Raises NumericalError if a simulation fails at the start.");
 }
 }  // namespace tendonlab::bindings

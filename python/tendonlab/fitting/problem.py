@@ -195,8 +195,13 @@ class Fitter:
         problem = pose(self.case, self.floor, system, added=() if known else added, initial=initial, known=known)
         if not solve:
             return problem.linearise()
-        ends: dict[str, Any] = {"max_iterations": max_iterations, "tolerance": tolerance}
-        return problem.solve(cancel=self.cancel, goal=goal, goal_within=goal_within, **ends)
+        return problem.solve(
+            cancel=self.cancel,
+            max_iterations=max_iterations,
+            tolerance=tolerance,
+            goal=goal,
+            goal_within=goal_within,
+        )
 
     def settled(self, fit: Fitted) -> Fitted:
         """The fit with its runs reseated. Without repeats: again under the noise that it leaves itself, until that
