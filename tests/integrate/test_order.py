@@ -43,9 +43,11 @@ def test_error_falls_in_proportion_to_the_tolerance(case):
     for tolerance in TOLERANCES:
         found = run(system, T, command, loop=loop, tolerance=tolerance).table
         errors.append(max(relative(a, b) for a, b in zip(found, best, strict=True)))
-    # a delay bounds each step by itself: there looser tolerances do not make it longer
-    asks = (1e-6 if case == "late loop" else 1.0) >= TOLERANCES
-    slope = np.polyfit(np.log10(TOLERANCES[asks]), np.log10(np.array(errors)[asks]), 1)[0]
+    if case == "late loop":  # the delay bounds each step: looser tolerances do not make it longer
+        assert np.all(np.array(errors) < 10.0 * TOLERANCES), errors
+        assert errors[-1] < 0.01 * errors[0], errors
+        return
+    slope = np.polyfit(np.log10(TOLERANCES), np.log10(errors), 1)[0]
     assert 0.8 < slope < 1.3, errors
     # the error of a run is the errors of its steps added up: not more than a hundred or so of them at the worst spots
     assert np.all(np.array(errors) < 300.0 * TOLERANCES), errors

@@ -4,6 +4,7 @@
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/integrate/contact.hpp"
 #include "tendonlab/integrate/drive.hpp"
+#include "tendonlab/integrate/explicit_reach.hpp"
 #include "tendonlab/integrate/growth.hpp"
 #include "tendonlab/integrate/saltation.hpp"
 #include "tendonlab/integrate/stiffness.hpp"
@@ -53,7 +54,7 @@ class Simulation {
     bool lands = false;       ///< ends on a jump of the inputs or on the last sample
     bool pauses = false;      ///< ends on a knot of a smooth input,
     double knot = 0;          ///< this one
-    bool explicitly = false;  ///< may be an explicit step: h reaches beyond what the inputs allow
+    bool explicitly = false;  ///< is an explicit step
   };
   void begin() {
     y.at.time = T(t);
@@ -89,14 +90,15 @@ class Simulation {
                                     " step attempts; expected to reach t = ", end,
                                     " s: a parameter may be far too stiff, or the tolerance too small"));
     const double reach = std::min(kink, end) - t;
-    Attempt next{std::min(h, drive.longest_step())};
     // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
-    if (plain_frame.holds) next.length = std::min(next.length, drive.next_knot(t + resolved()) - t);
+    const double knot = plain_frame.holds ? drive.next_knot(t + resolved()) - t : Signal::inf_time;
+    Attempt next{std::min({h, drive.longest_step(), knot})};
     next.lands = next.length > (retakes ? reach : 0.95 * reach);
     if (next.lands) next.length = reach;
     if (pausing > 0 && !retakes) pause_at_knot(next);
-    const bool is_last = next.lands && end <= kink;  // one look at stability costs more than this one step saves
-    next.explicitly = next.length < h && !is_last && next.length <= explicit_reach && next.length <= stable_reach();
+    if (!next.lands || kink < end)  // one look at stability costs more than the last step saves
+      plan_explicitly(next, std::min(reach, knot));
+    next.lands = next.length == reach;
     return next;
   }
   /// Accepts the step or not, and passes the event or the jump of the inputs that it ends on.
@@ -133,10 +135,9 @@ class Simulation {
     bool past = false;   ///< it began beyond its guard, by more than rounding
   };
   static constexpr double past_guard = 1e-14;
-  /// Growth of the next step from which on this one is so exact that its dense output, which is less accurate inside
-  /// than at the end, may tell the state at an event.
+  /// Growth of the next step from which on a Rosenbrock step is so exact that its dense output, which is less accurate
+  /// inside than at the end, may tell the state at an event. That of an explicit step is as exact as its error says.
   static constexpr double exact_inside = 2.0;
-  static constexpr double RETRY = 1.03;         ///< growth of the reach of explicit steps while none is taken
   static constexpr double stable = 2.5;         ///< rate times length up to which an explicit step damps (2.8 at most)
   static constexpr int STABLE_FOR = 64;         ///< explicit steps without events until stability is looked at again,
   static constexpr int STABLE_WITH_MEMORY = 3;  ///< with a memory, which settles faster the faster it slides
@@ -153,17 +154,17 @@ class Simulation {
     const double knot = drive.next_knot(t + resolved()) - t;
     if (length > knot && shorter < knot) pausing = patience, patience = std::min(2 * patience, MOST_PAUSES);
     if (tried.explicitly)
-      explicit_reach = shorter;
+      explicit_reach.failed(shorter);
     else
-      explicit_reach *= RETRY, shrink(shorter);
+      shrink(shorter);
   }
   /// The error allows the step; the first event in it, if there is one, may not.
   template <class Record>
   void accept(const Attempt& tried, const Step<Y>& step, double wish, const Crossing& first, Trajectory& trajectory,
               Record&& record) {
     const double length = tried.length;
-    if (!tried.explicitly) explicit_reach *= RETRY;
-    if (first.stale || (first.mode >= 0 && first.share < 0.97 && wish < exact_inside))
+    explicit_reach.learn(tried.explicitly, length, wish);
+    if (first.stale || (first.mode >= 0 && first.share < 0.97 && !tried.explicitly && wish < exact_inside))
       return aim(first, length, trajectory);
     retakes = false;
     const double taken = first.mode >= 0 ? first.share * length : length;
@@ -190,6 +191,12 @@ class Simulation {
   /// The shortest time that counts.
   double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
 
+  /// Up to a jump of the inputs, one or two explicit steps that are exact enough are less work than any others.
+  void plan_explicitly(Attempt& next, double reach) {
+    const double most = next.pauses ? next.length : reach, parts = explicit_reach.parts(most), length = most / parts;
+    if (retakes || parts > (next.pauses ? 1 : 2) || length > drive.longest_step() || length > stable_reach()) return;
+    next.length = length, next.explicitly = true;
+  }
   /// Within a piece of a smooth input a step is far more exact than one that passes a knot.
   void pause_at_knot(Attempt& next) const {
     const double knot = drive.next_knot(t + resolved());
@@ -319,8 +326,8 @@ class Simulation {
     refresh();
   }
   void pass_kink() {
-    drive.pass_known(t);  // at an instant that no parameter moves
-    settle({});
+    drive.pass_known(t);                 // at an instant that no parameter moves,
+    if (varies(drive.late)) settle({});  // unlike the jump of the command, which is looked at alone
     const Jump<System, T> jump(*this, -1, 0.0);
     const bool echoed = drive.hears_echo(t);  // an echo is smoother than its kink and is not passed on
     drive.pass_command(t);
@@ -378,7 +385,7 @@ class Simulation {
   Frame<System, T> frame;
   Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
-  double explicit_reach = Signal::inf_time;  ///< longest step that an explicit method takes as exactly
+  ExplicitReach explicit_reach;
   double longest_stable = 0;
   int still_stable = 0;          ///< explicit steps for which that holds
   int pausing = 0;               ///< steps that still end on knots,
