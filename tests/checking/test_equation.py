@@ -115,9 +115,12 @@ def test_a_scan_finds_the_lag_of_one_experiment(late: float, tmp_path: Path) -> 
     logs = read_logs(rig, rig.system().info)
     assert logs is not None
     names = [e.name for e in rig.experiments]
-    found = dict(zip(names, _scanned(Equation(rig, rig.system()), logs), strict=True))
-    assert found.pop("quick") == pytest.approx(late, abs=0.3 * abs(late))  # lags that are tried grow by 1.3
+    seconds, nats = _scanned(Equation(rig, rig.system()), logs)
+    found = dict(zip(names, seconds, strict=True))
+    assert found.pop("quick") == pytest.approx(late, abs=0.3 * abs(late))
     assert set(found.values()) == {0.0}
+    assert np.flatnonzero(nats > 100.0).tolist() == [names.index("quick")]
+    assert np.count_nonzero(nats) == 1
 
 
 def test_factors_of_right_logs_are_none_and_of_wrong_ones_come_best_first(equation: Equation, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tendonlab.checking.finding import Finding
-from tendonlab.checking.lags import Lags
+from tendonlab.checking.lags import Lags, middle_of
 
 SURE = 5.0  # sd that make a lag which all experiments share
 APART = 6.0  # sd, of the lag and of its scatter among experiments, by which one experiment lags the others
@@ -16,6 +16,7 @@ LEAST_SHARED = 0.25  # of a sample, of a lag that all share
 RESOLVED = 0.25  # of a sample: no lag is known better
 MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
 SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others
+SCANNED, ALONE = 20.0, 0.1  # nats of a scan that make an experiment late, and share of them that no other may reach
 STANDS_OUT = 2.0  # times the nats of any experiment that is not late: what the simulator lacks suits lags in all
 MOST_LATE = 0.25  # share of the experiments of which some may lag and others lead
 MIDDLE = 0.6745  # sd that half of all normal errors exceed
@@ -40,10 +41,18 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     late &= lags.gain > SUITS
     others = lags.gain[~late.any(axis=0) & np.isfinite(lags.gain)]
     late &= lags.gain > STANDS_OUT * np.max(others, initial=0.0)
+    late |= _late_alone(lags.scanned)
     if late.any(axis=0).sum() > MOST_LATE * len(names) and np.any(away[late] > 0) and np.any(away[late] < 0):
         late[:] = False  # so many clocks do not go wrong both ways: it is something that the simulator lacks
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
     return [*found, *_all_late(lags, inputs, shared, total, step)]
+
+
+def _late_alone(nats: np.ndarray) -> np.ndarray:
+    """Whether a scan shows that one experiment is late and no other is. Noise in a slow run makes its exact lag look
+    smaller than it is, and well known."""
+    others = [np.max(np.delete(nats, i), initial=0.0) for i in range(len(nats))]
+    return np.asarray((nats > SCANNED) & (np.array(others) < ALONE * nats))
 
 
 def _one_late(
@@ -101,9 +110,7 @@ def _common(seconds: np.ndarray, sd: np.ndarray, level: np.ndarray) -> tuple[flo
         away = np.abs(seconds - common)
         middle = [np.median(away / np.hypot(sd, share * level)) for share in shares]
         scatter = float(shares[int(np.argmax([*(np.array(middle[:-1]) <= MIDDLE), True]))])
-        order = np.argsort(seconds)
-        weight = np.cumsum(1.0 / np.hypot(sd, scatter * level)[order] ** 2)
-        common = float(seconds[order][np.searchsorted(weight, 0.5 * weight[-1])])
+        common = middle_of(seconds, 1.0 / np.hypot(sd, scatter * level) ** 2)
     return common, scatter
 
 

@@ -12,9 +12,10 @@ from tendonlab.checking.regression import FREEDOM, Fit
 from tendonlab.checking.scales import ROUGH_SHARE, shares
 from tendonlab.checking.terms import Terms, terms
 
-SAMPLES, SCANNED = 4000, 1000  # that decide, and that the scan looks at
+SAMPLES, SCANNED = 4000, 20000  # that decide, and that the scan looks at
 LONGEST, PART = 0.5, 0.25  # s, and share of the shortest experiment: lags that are looked for
-GROWTH = 1.3  # from one lag that is tried to the next
+GROWTH = 1.15  # from one lag that is tried to the next
+FAR = 3  # steps from the common lag at which only another clock is likely to suit an experiment better
 OWN = 3.0  # nats by which a lag of its own must suit an experiment better than the common one, to start the search
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 ROUNDS, CLOSE = 12, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
@@ -26,20 +27,23 @@ class Lags:
     """`seconds` and `sd` (channels, experiments): how far each output is behind the inputs; `channels`: the outputs;
     `weight` (channels, experiments): by how many times what the equations leave a lag of a second would change them;
     `gain` (experiments): nats by which the lags of its own suit an experiment better than those that most experiments
-    share; `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
+    share; `scanned` (experiments): the same of whole steps, where the inputs move a mass and `FAR` steps lie between;
+    `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
 
     channels: tuple[str, ...]
     seconds: np.ndarray
     sd: np.ndarray
     weight: np.ndarray
     gain: np.ndarray
+    scanned: np.ndarray
     level: float
 
 
 def lags(equation: Equation, logs: Logs) -> Lags:
     """The lag of every output in every experiment, all of them together with the parameters."""
     channels = equation.measured
-    late = np.tile(_scanned(equation, logs), (len(channels), 1))
+    scan, scanned = _scanned(equation, logs)
+    late = np.tile(scan, (len(channels), 1))
     kept = logs.regular(SAMPLES)
     share = np.full(len(equation.predicted), ROUGH_SHARE)
     sd = np.full(late.shape, np.inf)
@@ -48,7 +52,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         at = terms(equation, moved.at(kept))
         fit = at.fit(share)
         if not np.isfinite(fit.cost):
-            return Lags(channels, late, sd, np.zeros(late.shape), np.zeros(late.shape[1]), np.inf)
+            return Lags(channels, late, sd, np.zeros(late.shape), np.zeros(late.shape[1]), scanned, np.inf)
         share = shares(fit.residual, logs.run[kept])
         slopes = _slopes(equation, moved, kept, channels, at)
         own, belief = _with_friction(equation, moved.at(kept), at, slopes)
@@ -57,15 +61,16 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         if np.all(np.abs(step) < CLOSE * sd):
             break
     weight = _weights(slopes / (fit.level * at.size)[:, None], logs.run[kept], late.shape[1])
-    gain = _gain(equation, logs, kept, late, share, fit)
-    return Lags(channels, late, sd, weight, gain, float(fit.level[0]))
+    gain = _gain(equation, logs, kept, late, sd, share, fit)
+    return Lags(channels, late, sd, weight, gain, scanned, float(fit.level[0]))
 
 
 def _gain(
-    equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
+    equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, sd: np.ndarray, share: np.ndarray, fit: Fit
 ) -> np.ndarray:
     """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each."""
-    common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
+    middle = [middle_of(*each) for each in zip(late, 1.0 / sd**2, strict=True)]
+    common = np.repeat(np.array(middle)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
     without = at.fit(share)
@@ -74,6 +79,13 @@ def _gain(
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
     return np.bincount(moved.run, nats, late.shape[1])
+
+
+def middle_of(values: np.ndarray, weight: np.ndarray) -> float:
+    """The median, in which each value counts by its weight."""
+    order = np.argsort(values)
+    sums = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])
 
 
 def _slopes(equation: Equation, moved: Logs, kept: np.ndarray, channels: tuple[str, ...], at: Terms) -> np.ndarray:
@@ -129,15 +141,17 @@ def _steps(
     return np.array(step).T, np.sqrt(np.array(variance)).T
 
 
-def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
+def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     """The lag of all outputs together in each experiment, in whole steps of the logs, at which the equation fits
-    best."""
+    best; and the nats by which it does so where that lag lies far from the common one. Without a mass, hysteresis
+    resembles a lag of any size: none are counted."""
     kept, num = logs.regular(SCANNED), len(equation.dataset.experiments)
     at = terms(equation, logs.at(kept))
     fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
     if not np.isfinite(fit.cost):
-        return np.zeros(num)
+        return np.zeros(num), np.zeros(num)
     changed, scale = fit.residual - at.residual, (fit.level * at.size)[:, None]
+    stride = float(np.median(np.diff(kept)))
     shortest = min(e.duration for e in equation.dataset.experiments)
     most = max(1.0, min(LONGEST, PART * shortest) / logs.step)
     sizes = np.unique(np.round(GROWTH ** np.arange(0.0, np.log(most) / np.log(GROWTH) + 1e-9))).astype(int)
@@ -145,11 +159,15 @@ def _scanned(equation: Equation, logs: Logs) -> np.ndarray:
     cost = np.empty((len(tried), num))
     for k, steps in enumerate(tried):
         moved = logs.rolled(equation.measured, int(steps)).at(kept)
-        residual = equation.evaluate(equation.along(moved), len(kept)) + changed
+        # what the parameters change follows from the motion: it moves with the outputs
+        there = np.clip(np.arange(len(kept)) + round(steps / stride), 0, len(kept) - 1)
+        residual = equation.evaluate(equation.along(moved), len(kept)) + changed[:, there]
         surprise = np.sum(np.log1p((residual / scale) ** 2), axis=0)
         cost[k] = np.bincount(moved.run, surprise, num)
     common = int(np.argmin(np.sum(cost, axis=1)))
     differs = cost[common] - np.min(cost, axis=0) > OWN / ROUGH_SHARE
     best = np.where(differs, np.argmin(cost, axis=0), common)
     inside = (best > 0) & (best < len(tried) - 1)
-    return np.asarray(np.where(inside, tried[best], 0) * logs.step)
+    far = inside & (np.abs(tried[best] - tried[common]) >= FAR) & bool(equation.moved)
+    nats = 0.5 * (FREEDOM + 1) * ROUGH_SHARE * (cost[common] - np.min(cost, axis=0))
+    return np.where(inside, tried[best], 0) * logs.step, np.where(far, nats, 0.0)

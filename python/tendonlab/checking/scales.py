@@ -25,6 +25,9 @@ MENDED = 0.7  # share of the level of a bad equation that a right factor must at
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
+MERE = 0.9  # share of the gain of a negative factor at which a mere sign is believed,
+HEALED = 0.1  # and share of the level of an equation that such a sign leaves
+AWAY = RATIO**-6  # of a channel that is explained away
 BLOCKING = 1.7  # a factor below it is a parameter
 
 
@@ -64,16 +67,30 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     share = told * independent(best, equation, fine)
     base = terms(equation, fine).fit(share)
     polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
+    polished = [_mere_sign(equation, fine, f, share, base, told) for f in polished]
     judged = sorted((replace(f, gain=base.cost - f.fit.cost) for f in polished), key=lambda f: f.fit.cost)
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
     if base.strain < STRAINED and not _mends(best.fit.level, base.level, told):
         return []
-    beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
+    beyond = AWAY if best.value == -1.0 else best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
     if _fitted(equation, fine, best.signals, beyond, share).cost < best.fit.cost + LEAST_GAIN:
         return []  # a channel that suits at any such size is explained away, not explained
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
+
+
+def _mere_sign(
+    equation: Equation, logs: Logs, factor: Factor, share: np.ndarray, base: Fit, told: np.ndarray
+) -> Factor:
+    """A turned sign instead of a negative factor that suits hardly better, where it heals an equation: nobody logs a
+    channel times -0.7."""
+    if factor.value > 0:
+        return factor
+    turned = Factor(factor.signals, -1.0, _fitted(equation, logs, factor.signals, -1.0, share))
+    heals = bool(np.any(turned.fit.level[told] < HEALED * base.level[told]))
+    hardly_worse = base.cost - turned.fit.cost > MERE * (base.cost - factor.fit.cost)
+    return turned if heals and hardly_worse else factor
 
 
 def _mends(level: np.ndarray, before: np.ndarray, told: np.ndarray) -> bool:
