@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tendonlab.checking.finding import Finding
-from tendonlab.checking.lags import Lags, middle_of
+from tendonlab.checking.lags import Lags
 
 SURE = 5.0  # sd that make a lag which all experiments share
 APART = 6.0  # sd, of the lag and of its scatter among experiments, by which one experiment lags the others
@@ -110,7 +110,9 @@ def _common(seconds: np.ndarray, sd: np.ndarray, level: np.ndarray) -> tuple[flo
         away = np.abs(seconds - common)
         middle = [np.median(away / np.hypot(sd, share * level)) for share in shares]
         scatter = float(shares[int(np.argmax([*(np.array(middle[:-1]) <= MIDDLE), True]))])
-        common = middle_of(seconds, 1.0 / np.hypot(sd, scatter * level) ** 2)
+        order = np.argsort(seconds)
+        weight = np.cumsum(1.0 / np.hypot(sd, scatter * level)[order] ** 2)
+        common = float(seconds[order][np.searchsorted(weight, 0.5 * weight[-1])])
     return common, scatter
 
 

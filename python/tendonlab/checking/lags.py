@@ -61,16 +61,15 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         if np.all(np.abs(step) < CLOSE * sd):
             break
     weight = _weights(slopes / (fit.level * at.size)[:, None], logs.run[kept], late.shape[1])
-    gain = _gain(equation, logs, kept, late, sd, share, fit)
+    gain = _gain(equation, logs, kept, late, share, fit)
     return Lags(channels, late, sd, weight, gain, scanned, float(fit.level[0]))
 
 
 def _gain(
-    equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, sd: np.ndarray, share: np.ndarray, fit: Fit
+    equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
 ) -> np.ndarray:
     """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each."""
-    middle = [middle_of(*each) for each in zip(late, 1.0 / sd**2, strict=True)]
-    common = np.repeat(np.array(middle)[:, None], late.shape[1], axis=1)
+    common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
     without = at.fit(share)
@@ -79,13 +78,6 @@ def _gain(
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
     return np.bincount(moved.run, nats, late.shape[1])
-
-
-def middle_of(values: np.ndarray, weight: np.ndarray) -> float:
-    """The median, in which each value counts by its weight."""
-    order = np.argsort(values)
-    sums = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])
 
 
 def _slopes(equation: Equation, moved: Logs, kept: np.ndarray, channels: tuple[str, ...], at: Terms) -> np.ndarray:
