@@ -1,5 +1,6 @@
 """A motor on a pendulum under position control, in plain numpy, and its logs with mistakes in them."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -8,8 +9,9 @@ import numpy as np
 import tendonlab as tl
 
 INERTIA, GRAVITY, CONSTANT, COULOMB, VISCOUS = 0.02, 1.1, 0.5, 0.08, 0.03
+Motion = Callable[[np.ndarray], np.ndarray]
 RATE, FINE = 250, 8  # samples per second, steps of the simulation per sample
-MOTIONS = {
+MOTIONS: dict[str, Motion] = {
     "reversals": lambda t: 0.9 * np.sin(1.1 * t),
     "quick": lambda t: 0.5 * np.sin(4.0 * t) + 0.15 * np.sin(11.0 * t),
     "sweep": lambda t: 0.4 * np.sin((0.8 + 0.5 * t) * t),
@@ -58,10 +60,10 @@ joint_angle = {{ column = "q", unit = "{angle}" }}
         return tl.load(folder)
 
 
-def record(*, late: float = 0.0, seed: int = 0) -> Logs:
+def record(*, late: float = 0.0, seed: int = 0, motions: Mapping[str, Motion] = MOTIONS) -> Logs:
     """Correct logs; the angle is read `late`, s, with a noise of 0.2 mrad, the current with one of 10 mA."""
     rng, runs = np.random.default_rng(seed), {}
-    for name, motion in MOTIONS.items():
+    for name, motion in motions.items():
         time, angle, current = _simulate(motion)
         seen = np.interp(time - late, time, angle) + 2e-4 * rng.standard_normal(len(time))
         runs[name] = (time, seen, current + 0.01 * rng.standard_normal(len(time)))

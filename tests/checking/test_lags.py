@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from checking.pendulum import late_run, record
+from checking.pendulum import MOTIONS, Motion, late_run, record
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.lags import _steps, _weights, lags
 from tendonlab.checking.logs import read_logs
@@ -64,3 +64,14 @@ def test_lags_come_out_with_their_sd_and_in_their_experiment(late: float, tmp_pa
     kept = logs.regular(100)
     assert 50 < len(kept) <= 100
     assert logs.clear[kept].all()
+
+
+def test_one_quick_run_that_is_late_does_not_set_the_lag_that_slow_ones_share(tmp_path: Path) -> None:
+    """Its lag is known far better than theirs."""
+    slow: dict[str, Motion] = {f"slow {k}": lambda t, k=k: 0.8 * np.sin((0.6 + 0.05 * k) * t) for k in range(4)}
+    rig = late_run(record(motions={**slow, "quick": MOTIONS["quick"]}), "quick", 0.02).write(tmp_path)
+    logs = read_logs(rig, rig.system().info)
+    assert logs is not None
+    found = lags(Equation(rig, rig.system()), logs)
+    assert found.sd[0, -1] < 0.2 * np.min(found.sd[0, :-1])
+    assert found.gain[-1] > 10.0 * np.max(found.gain[:-1])

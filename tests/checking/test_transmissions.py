@@ -68,6 +68,12 @@ def test_a_wrong_sign_is_found_beside_a_tension_that_the_check_cannot_predict(tm
     assert "joint_angle" in place
 
 
+def test_a_turned_tension_is_its_sign_though_a_smaller_factor_mends_another_equation_too(tmp_path: Path) -> None:
+    fault = Fault(problem="sign", signals=("tension_22",), factor=-1.0)
+    [(kind, place, factor)] = found(tmp_path, "ccsrm", fault)
+    assert (kind, "tension_22" in place, factor) == ("sign", True, pytest.approx(-1.0))
+
+
 @pytest.mark.cpu(20)
 @pytest.mark.parametrize(
     ("signal", "factor"),

@@ -52,6 +52,19 @@ def test_a_stiff_memory_costs_few_rejected_steps():
     assert found.rejected < 0.1 * found.attempts
 
 
+def test_noise_that_turns_a_joint_costs_few_steps():
+    """A step that ends on an event is followed by explicit ones up to the next sample, not by a short Rosenbrock step:
+    with those, 1.6 steps for each sample and event."""
+    draw = np.random.default_rng(1)
+    system, command = pair(NOMINAL, **FRICTION), 0.05 * draw.standard_normal(len(T))
+    logged = smooth(T, 0.02 * np.sin(2 * np.pi * 0.8 * T) + 1.1e-4 * draw.standard_normal(len(T)))
+    loop = controller(logged, kind="injection", proportional=0.64, derivative=0.03)
+    found, best = (run(system, T, command, kind="hold", loop=loop, tolerance=t) for t in (1e-4, 1e-9))
+    assert found.events > 0.2 * len(T)
+    assert found.attempts < 1.5 * (len(T) + found.events)
+    assert max(relative(a, b) for a, b in zip(found.table, best.table, strict=True)) < 1e-4
+
+
 def test_a_late_sensor_of_an_injection_costs_one_more_step_per_sample():
     """The knots of the log that the injection reads ahead in lie between the samples of the command."""
     draw = np.random.default_rng(0)

@@ -27,8 +27,8 @@ class Lags:
     """`seconds` and `sd` (channels, experiments): how far each output is behind the inputs; `channels`: the outputs;
     `weight` (channels, experiments): by how many times what the equations leave a lag of a second would change them;
     `gain` (experiments): nats by which the lags of its own suit an experiment better than those that most experiments
-    share; `scanned` (experiments): the same of whole steps, where the inputs move a mass and `FAR` steps lie between;
-    `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
+    share; `scanned` (experiments): nats by which a scan prefers a lag that lies far from the common one, 0 where it
+    prefers a near one; `level`: what the balance of efforts leaves, relative to what the inputs contribute."""
 
     channels: tuple[str, ...]
     seconds: np.ndarray

@@ -74,7 +74,9 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
         return []
     if base.strain < STRAINED and not _mends(best.fit.level, base.level, told):
         return []
-    beyond = AWAY if best.value == -1.0 else best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
+    beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
+    if best.value == -1.0 and _heals(best.fit, base, told):
+        beyond = AWAY
     if _fitted(equation, fine, best.signals, beyond, share).cost < best.fit.cost + LEAST_GAIN:
         return []  # a channel that suits at any such size is explained away, not explained
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
@@ -88,9 +90,12 @@ def _mere_sign(
     if factor.value > 0:
         return factor
     turned = Factor(factor.signals, -1.0, _fitted(equation, logs, factor.signals, -1.0, share))
-    heals = bool(np.any(turned.fit.level[told] < HEALED * base.level[told]))
     hardly_worse = base.cost - turned.fit.cost > MERE * (base.cost - factor.fit.cost)
-    return turned if heals and hardly_worse else factor
+    return turned if hardly_worse and _heals(turned.fit, base, told) else factor
+
+
+def _heals(fit: Fit, base: Fit, told: np.ndarray) -> bool:
+    return bool(np.any(fit.level[told] < HEALED * base.level[told]))
 
 
 def _mends(level: np.ndarray, before: np.ndarray, told: np.ndarray) -> bool:
