@@ -11,6 +11,8 @@ import pytest
 import tendonlab as tl
 from tendonlab import _core
 from tendonlab.cli.demo import bundled
+from tendonlab.errors import NumericalError
+from tendonlab.fitting import problem as problem_module
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter, pose
@@ -76,6 +78,24 @@ def test_a_run_in_a_wrong_initial_state_starts_again() -> None:
     cancel = _core.Cancel()
     cancel.set()
     assert problem.reseated(there, cancel) is there
+
+
+@pytest.mark.parametrize("fails", ["linearise", "solve"])
+def test_a_run_that_cannot_be_simulated_from_elsewhere_stays(fails: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One simulation that ends in an error ended a whole diagnosis."""
+    rig = tl.load(bundled())
+    case = make_case(rig, experiments=rig.train[:1])
+    problem = pose(case, white(case.noise), case.system)
+    right = problem.linearise()
+    wrong = [tuple(np.add(own, 0.2)) for own in right.initial]
+    there = problem.at(case.system, wrong).linearise()
+    assert there.cost > right.cost
+
+    def stops(*_: Any, **__: Any) -> Any:
+        raise NumericalError("simulation stopped")
+
+    monkeypatch.setattr(problem_module.Problem, fails, stops)
+    assert problem.reseated(there, _core.Cancel()) is there
 
 
 @pytest.mark.slow

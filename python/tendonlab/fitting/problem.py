@@ -4,7 +4,7 @@ experiments of a case and under one noise floor."""
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab._core import Free
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
@@ -65,21 +66,29 @@ class Problem:
     def reseated(self, fit: Fitted, cancel: _core.Cancel, *, steps: int = 0, **options: Any) -> Fitted:
         """The `fit` of this problem, again with the initial states of some runs found anew from what is believed of
         them: early steps of a fit may leave a run that starts at rest in a place where stiction holds it. `steps`:
-        iterations for these states; `options`: of the new fit, as `solve` has them."""
+        iterations for these states; `options`: of the new fit, as `solve` has them. From where no simulation runs, no
+        run starts anew."""
         for _ in range(NUM_RESTARTS):
             if cancel.is_set() or not any(len(run.own) for run in fit.runs):
                 return fit
-            alone = replace(self, free=(), system=fit.system, initial=())
-            fresh = alone.solve(cancel=cancel, max_iterations=steps) if steps else alone.linearise()
-            better = [new.cost < BETTER * old.cost for new, old in zip(fresh.runs, fit.runs, strict=True)]
-            if not any(better):
+            try:
+                again = self._from_belief(fit, cancel, steps, options)
+            except NumericalError:
                 return fit
-            own = [new if b else old for new, old, b in zip(fresh.initial, fit.initial, better, strict=True)]
-            again = self.at(fit.system, own).solve(cancel=cancel, **options)
-            if not again.cost < fit.cost:
+            if again is None or not again.cost < fit.cost:
                 return fit
             fit = again
         return fit
+
+    def _from_belief(self, fit: Fitted, cancel: _core.Cancel, steps: int, options: Mapping[str, Any]) -> Fitted | None:
+        """The `fit` again, with the runs that fit better so started from what is believed of them; None without any."""
+        alone = replace(self, free=(), system=fit.system, initial=())
+        fresh = alone.solve(cancel=cancel, max_iterations=steps) if steps else alone.linearise()
+        better = [new.cost < BETTER * old.cost for new, old in zip(fresh.runs, fit.runs, strict=True)]
+        if not any(better):
+            return None
+        own = [new if b else old for new, old, b in zip(fresh.initial, fit.initial, better, strict=True)]
+        return self.at(fit.system, own).solve(cancel=cancel, **options)
 
     def return_to_prior(self, fit: Fitted) -> Fitted:
         """The `fit` of this problem with every parameter that the data do not constrain back at its prior's middle.
