@@ -67,6 +67,16 @@ def test_a_scan_that_shows_one_late_run_alone_blocks(nats: float, other: float, 
     assert found == (["b"] if blocks else [])
 
 
+@pytest.mark.parametrize(("others", "blocks"), [((0.001, -0.001, 0.002, 0.0), True), ((0.01, -0.01, 0.02, 0.0), False)])
+def test_a_scan_tells_nothing_where_the_lags_of_the_others_scatter_as_much(
+    others: tuple[float, ...], blocks: bool
+) -> None:
+    """A stop, say, delays every motion that meets it."""
+    late = np.array([[others[0], 0.04, *others[1:]]])
+    lags = lags_of(("q",), late, np.zeros(5), scanned=(0.0, 25.0, 0.0, 0.0, 0.0))
+    assert any(f.blocks for f in clock_findings(lags, NAMES, ["motor_torque"], STEP)) == blocks
+
+
 def test_of_two_late_runs_each_is_judged_against_the_rest() -> None:
     """Not against each other: one that fails is no bar for the other."""
     late = np.array([[0.0, 0.05, 0.0, 0.07, 0.0]])

@@ -1,13 +1,15 @@
 """Lags of the outputs: the step of all unknowns together against one dense least-squares problem, and the weight."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from checking.pendulum import MOTIONS, Motion, late_run, record
+from tendonlab.checking.clocks import SCANNED
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.lags import _steps, _weights, lags
+from tendonlab.checking.lags import _saved, _steps, _weights, lags
 from tendonlab.checking.logs import read_logs
 from tendonlab.checking.regression import FREEDOM, Fit, Unknown
 from tendonlab.checking.terms import Terms
@@ -75,3 +77,29 @@ def test_one_quick_run_that_is_late_does_not_set_the_lag_that_slow_ones_share(tm
     found = lags(Equation(rig, rig.system()), logs)
     assert found.sd[0, -1] < 0.2 * np.min(found.sd[0, :-1])
     assert found.gain[-1] > 10.0 * np.max(found.gain[:-1])
+
+
+def test_friction_of_its_own_saves_what_it_explains() -> None:
+    """Of an effort that is dry and viscous friction nearly all, of one across them nothing."""
+    rng = np.random.default_rng(0)
+    speed = np.sin(np.linspace(0.0, 20.0, 400))
+    columns, noise = np.stack([np.sign(speed), speed], axis=1), rng.standard_normal(400)
+    friction = 3.0 * np.sign(speed) + 2.0 * speed + noise
+    alone = np.sum(np.log1p(friction**2)) - np.sum(np.log1p(noise**2))
+    assert _saved(friction, columns) == pytest.approx(alone, rel=0.02)
+    across = 3.0 * np.cos(np.linspace(0.0, 20.0, 400)) + noise
+    assert _saved(across, columns) < 0.1 * np.sum(np.log1p(across**2))
+
+
+def test_a_cold_run_is_not_late(tmp_path: Path) -> None:
+    """Twice the friction in one run makes that run lag in a scan; a late run lags beyond what its friction explains."""
+    logs = record(motions={"cold": MOTIONS["reversals"], **MOTIONS})
+    time, angle, current = logs.runs["cold"]
+    speed = np.gradient(np.interp(time, time[::5], angle[::5]), time)
+    cold = replace(logs, runs={**logs.runs, "cold": (time, angle, current + 0.3 * np.tanh(speed / 0.02))})
+    for rig, is_late in ((cold, False), (late_run(logs, "cold", 0.1), True)):
+        data = rig.write(tmp_path / str(is_late))
+        found = read_logs(data, data.system().info)
+        assert found is not None
+        scanned = lags(Equation(data, data.system()), found).scanned
+        assert bool(scanned[0] > SCANNED) == is_late

@@ -1,9 +1,10 @@
-"""How many samples of a residual count, by which the gain of a factor is judged."""
+"""How many samples of a residual count, and what a right factor must bring."""
 
 import numpy as np
 import pytest
 
-from tendonlab.checking.scales import shares
+from tendonlab.checking.regression import Fit
+from tendonlab.checking.scales import _helps, shares
 
 
 @pytest.mark.parametrize("times", [1, 5, 20])
@@ -12,3 +13,27 @@ def test_samples_that_are_written_several_times_count_once(times: int) -> None:
     residual = np.repeat(noise, times, axis=1)
     run = np.repeat([0, 1], 1000 * times)
     assert shares(residual, run) == pytest.approx(1.0 / times, rel=0.2)
+
+
+def left(level: list[float], strain: float) -> Fit:
+    num = len(level)
+    return Fit(0.0, np.zeros(0), np.zeros(0), np.array(level), np.zeros((num, 1)), np.ones((num, 1)), strain)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "helps"),
+    [
+        (([0.31, 0.02], 8.0), ([0.29, 0.01], 5.8), False),  # a stop: nothing is better by much
+        (([0.31, 0.02], 8.0), ([0.29, 0.01], 3.9), True),
+        (([0.31, 0.02], 8.0), ([0.2, 0.01], 8.0), True),
+        (([0.31, 0.02], 1.9), ([0.29, 0.01], 0.1), False),  # nothing was strained
+        (([0.04, 0.02], 1.9), ([0.04, 0.02], 1.9), True),  # nothing balances badly
+        (([0.31, 0.91], 8.0), ([0.02, 1.88], 1.0), False),  # another equation is spoilt
+        (([0.31, 0.91], 8.0), ([0.02, 1.2], 1.0), True),
+        (([0.31, 0.02], 8.0), ([0.02, 0.6], 1.0), True),
+    ],
+)
+def test_a_factor_mends_an_equation_or_relieves_beliefs_and_spoils_nothing(
+    before: tuple[list[float], float], after: tuple[list[float], float], helps: bool
+) -> None:
+    assert _helps(left(*after), left(*before), np.array([True, True])) == helps

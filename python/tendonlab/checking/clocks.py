@@ -41,7 +41,7 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     late &= lags.gain > SUITS
     others = lags.gain[~late.any(axis=0) & np.isfinite(lags.gain)]
     late &= lags.gain > STANDS_OUT * np.max(others, initial=0.0)
-    late |= _late_alone(lags.scanned)
+    late |= _late_alone(lags.scanned) & _far_off(away)
     if late.any(axis=0).sum() > MOST_LATE * len(names) and np.any(away[late] > 0) and np.any(away[late] < 0):
         late[:] = False  # so many clocks do not go wrong both ways: it is something that the simulator lacks
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
@@ -53,6 +53,13 @@ def _late_alone(nats: np.ndarray) -> np.ndarray:
     smaller than it is, and well known."""
     others = [np.max(np.delete(nats, i), initial=0.0) for i in range(len(nats))]
     return np.asarray((nats > SCANNED) & (np.array(others) < ALONE * nats))
+
+
+def _far_off(away: np.ndarray) -> np.ndarray:
+    """Whether a lag is far from the others beside what these scatter, in any channel: a stop delays every motion that
+    meets it."""
+    others = [np.median(np.abs(np.delete(away, i, axis=1)), axis=1) / MIDDLE for i in range(away.shape[1])]
+    return np.asarray(np.any(np.abs(away) > APART * np.array(others).T, axis=0))
 
 
 def _one_late(

@@ -135,8 +135,8 @@ def _steps(
 
 def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     """The lag of all outputs together in each experiment, in whole steps of the logs, at which the equation fits
-    best; and the nats by which it does so where that lag lies far from the common one. Without a mass, hysteresis
-    resembles a lag of any size: none are counted."""
+    best; and the nats by which it does so where that lag lies far from the common one, and friction of its own brings
+    less. Without a mass, hysteresis resembles a lag of any size: none are counted."""
     kept, num = logs.regular(SCANNED), len(equation.dataset.experiments)
     at = terms(equation, logs.at(kept))
     fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
@@ -148,18 +148,43 @@ def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     most = max(1.0, min(LONGEST, PART * shortest) / logs.step)
     sizes = np.unique(np.round(GROWTH ** np.arange(0.0, np.log(most) / np.log(GROWTH) + 1e-9))).astype(int)
     tried = np.concatenate([-sizes[::-1], [0], sizes])
-    cost = np.empty((len(tried), num))
+    cost, left = np.empty((len(tried), num)), []
     for k, steps in enumerate(tried):
         moved = logs.rolled(equation.measured, int(steps)).at(kept)
         # what the parameters change follows from the motion: it moves with the outputs
         there = np.clip(np.arange(len(kept)) + round(steps / stride), 0, len(kept) - 1)
         residual = equation.evaluate(equation.along(moved), len(kept)) + changed[:, there]
+        left.append(residual)
         surprise = np.sum(np.log1p((residual / scale) ** 2), axis=0)
         cost[k] = np.bincount(moved.run, surprise, num)
     common = int(np.argmin(np.sum(cost, axis=1)))
+    own = _by_friction(equation, logs.rolled(equation.measured, int(tried[common])).at(kept), left[common], scale)
     differs = cost[common] - np.min(cost, axis=0) > OWN / ROUGH_SHARE
     best = np.where(differs, np.argmin(cost, axis=0), common)
     inside = (best > 0) & (best < len(tried) - 1)
-    far = inside & (np.abs(tried[best] - tried[common]) >= FAR) & bool(equation.moved)
-    nats = 0.5 * (FREEDOM + 1) * ROUGH_SHARE * (cost[common] - np.min(cost, axis=0))
+    gained = cost[common] - np.min(cost, axis=0)
+    far = inside & (np.abs(tried[best] - tried[common]) >= FAR) & (gained > own) & bool(equation.moved)
+    nats = 0.5 * (FREEDOM + 1) * ROUGH_SHARE * gained
     return np.where(inside, tried[best], 0) * logs.step, np.where(far, nats, 0.0)
+
+
+def _by_friction(equation: Equation, logs: Logs, residual: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """By how much dry and viscous friction of its own lowers the surprise of each experiment, as a cold one needs,
+    beyond what it lowers that of the others: friction that the simulator lacks helps all of them."""
+    saved = np.zeros(len(equation.dataset.experiments))
+    for k, name in enumerate(equation.moved):
+        speed = logs.moving[name][1]
+        columns = np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300)], axis=1)
+        for i in range(len(saved)):
+            here = logs.run == i
+            saved[i] += _saved(residual[k, here] / scale[k], columns[here])
+    return np.maximum(saved - np.median(saved), 0.0)
+
+
+def _saved(left: np.ndarray, columns: np.ndarray) -> float:
+    """By how much the best sum of the `columns` lowers the surprise of what is `left`."""
+    rest = left
+    for _ in range(ROUNDS):
+        weighted = columns / (1.0 + rest**2)[:, None]
+        rest = left - columns @ (np.linalg.pinv(weighted.T @ columns, hermitian=True) @ (weighted.T @ left))
+    return max(0.0, float(np.sum(np.log1p(left**2) - np.log1p(rest**2))))

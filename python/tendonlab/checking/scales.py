@@ -21,7 +21,9 @@ GAUSS_NEWTON, NUDGE = 3, 1e-4  # steps to the least of a narrow valley, and the 
 REFINED = 4  # of the best, which are looked at closely
 SUSPECT, STRAINED = 0.05, 2.0  # level of the residual, and sd of the beliefs, beyond which factors are looked for
 EXPLAINED = 0.7  # level of the residual beyond which an equation explains too little to judge by: half the power
-MENDED = 0.7  # share of the level of a bad equation that a right factor must at most leave, where no belief is strained
+MENDED = 0.7  # share of the level of a bad equation that a right factor must at most leave, or
+RELIEVED = 0.5  # share of the strain of the beliefs that it may leave instead
+SPOILT = 1.5  # times the level of an equation that explains too little, beyond which a factor is no right one
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
@@ -72,7 +74,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
-    if base.strain < STRAINED and not _mends(best.fit.level, base.level, told):
+    if not _helps(best.fit, base, told):
         return []
     beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
     if best.value == -1.0 and _heals(best.fit, base, told):
@@ -98,11 +100,14 @@ def _heals(fit: Fit, base: Fit, told: np.ndarray) -> bool:
     return bool(np.any(fit.level[told] < HEALED * base.level[told]))
 
 
-def _mends(level: np.ndarray, before: np.ndarray, told: np.ndarray) -> bool:
-    """Whether any equation that balances badly balances better. One that balances well anyway, as that of a stiff cable
-    does, may gain many nats from a factor that no other equation asks for."""
-    suspect = told & (before >= SUSPECT)
-    return not suspect.any() or bool(np.any(level[suspect] < MENDED * before[suspect]))
+def _helps(fit: Fit, base: Fit, told: np.ndarray) -> bool:
+    """Whether any equation that balances badly balances better, or beliefs that the logs strain are relieved; and no
+    equation is spoilt. One that balances well anyway, as that of a stiff cable does, may gain many nats from a factor
+    that no other equation asks for; and so may one that lacks something large, as a stop."""
+    suspect = told & (base.level >= SUSPECT)
+    mends = not suspect.any() or bool(np.any(fit.level[suspect] < MENDED * base.level[suspect]))
+    relieves = base.strain >= STRAINED and fit.strain < RELIEVED * base.strain
+    return (mends or relieves) and not np.any(fit.level > np.fmax(EXPLAINED, SPOILT * base.level))
 
 
 def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
