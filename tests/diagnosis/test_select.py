@@ -30,7 +30,9 @@ def model(*added: str, evidence: float = 0.0, exploded: bool = False) -> Any:
 
 
 def trial(effect: str, gain: float, *others: str, left_out: float = 100.0) -> Trial:
-    return Trial(effect, model(*others, effect, evidence=gain), gain, left_out, 0.0)
+    fitted = model(*others, effect, evidence=gain)
+    fitted.mean_square = 5.0
+    return Trial(effect, fitted, gain, left_out, 0.0)
 
 
 def screened(effect: str, gain: float, *, trouble: str = "") -> Screened:
@@ -62,6 +64,7 @@ def worthy(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         monkeypatch.setattr(contest, "strained", lambda *_: strained)
         monkeypatch.setattr(contest, "at_believed_values", lambda fitter, base: (fitter, base))
         monkeypatch.setattr(contest, "_worth_adding", lambda *_, **__: worth)
+        monkeypatch.setattr(contest, "plainest_first", lambda trials, _: trials)
 
     return set_up
 

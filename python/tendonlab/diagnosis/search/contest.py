@@ -12,7 +12,15 @@ from tendonlab.diagnosis.discrepancy import may_be_noise
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
-from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, bar_for_further_effect, explains_enough, is_no_shape
+from tendonlab.diagnosis.search.trial import (
+    DETECT,
+    Bar,
+    Trial,
+    bar_for_further_effect,
+    explains_enough,
+    is_no_shape,
+    plainest_first,
+)
 from tendonlab.diagnosis.search.workshop import FAR_BEHIND, Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -89,6 +97,8 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     refitted = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
     trials = refitted.trials
     established = {t.effect for t in trials if bar.passed(t)}
+    if trials and trials[0].effect in established:
+        trials = plainest_first(trials, established)
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
         leader, established = None, set()
@@ -164,10 +174,12 @@ def probabilities(
 ) -> dict[str | None, float]:
     """Probability of each effect, and of no further effect (None): softmax of evidence over a temperature.
 
-    Raw evidence is over-confident. An effect that is not established ranks clearly behind None."""
+    Raw evidence is over-confident. An effect that is not established ranks clearly behind None, and none counts more
+    than the first one, to which it may have given way."""
     gains: dict[str | None, float] = {None: bar.evidence}
     for t in trials:
-        limit = np.inf if t.effect in established else bar.evidence - UNCONFIRMED * temperature
+        most = trials[0].evidence_gain
+        limit = most if t.effect in established else bar.evidence - UNCONFIRMED * temperature
         gains[t.effect] = min(t.evidence_gain, limit)
     top = max(gains.values())
     weights = {name: float(np.exp((g - top) / temperature)) for name, g in gains.items()}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
 
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
 
 STEADY, LOSSES = 2.0, 5.0
@@ -15,6 +16,7 @@ MOST = 1e9  # nats: beyond, a gain says no more
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
 TWIN = 3.0  # nats within which two effects say the same of these data
 SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that an effect must remove
+LITTLE = 0.1  # of the rest, far above the floor: of right further effects none removed less than 0.14
 HIDDEN = 100.0  # nats by which a weak effect must show behind a dominant one: errors of shapes gained 84
 
 
@@ -40,6 +42,11 @@ class Trial:
         lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
         return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost)
 
+    @property
+    def num_parameters(self) -> int:
+        """Parameters of the effect."""
+        return len(self.fitted.system.info.effect(self.effect).parameters)
+
 
 def _bounded(gains: np.ndarray | float) -> np.ndarray:
     """Gains over a model whose derivatives exploded, which has no evidence, are large but finite; of one such model
@@ -63,6 +70,19 @@ def counted_alike(trials: Sequence[Trial], base: Fitted) -> list[Trial]:
     shares = max(trials, key=lambda t: t.fitted.counted().evidence).fitted.shares
     alike = [Trial.of(t.effect, t.fitted.counted(shares), base) for t in trials]
     return sorted(alike, key=lambda trial: -trial.evidence_gain)
+
+
+def plainest_first(trials: Sequence[Trial], established: Set[str]) -> list[Trial]:
+    """The trials, best first. The first one gives way to the best of those with fewer parameters that foretell left-out
+    experiments as well within its doubt: an offset, for friction that differs by direction in a single run."""
+    first = trials[0]
+    for plain in trials[1:]:
+        if plain.effect not in established or plain.num_parameters >= first.num_parameters:
+            continue
+        gains = first.fitted.by_experiment(first.fitted.left_out - plain.fitted.left_out)
+        if np.sum(gains) <= doubt(gains) < np.inf:
+            return [plain, *(t for t in trials if t is not plain)]
+    return list(trials)
 
 
 @dataclass(frozen=True)
@@ -102,7 +122,15 @@ def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
 
 def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> bool:
     """Whether, where repeats say what is noise, the first trial is more than the error of the shape of an effect that
-    was added before: either by its share of the `largest_gain` of those, or because it tells clearly and leaves
-    little."""
+    was added before: either by its share of the `largest_gain` of those and of what is left, or because it tells
+    clearly and leaves little."""
     gain = trials[0].evidence_gain
-    return gain > FURTHER_SHARE * largest_gain or (gain > HIDDEN and explains_enough(base, trials))
+    if gain > HIDDEN and explains_enough(base, trials):
+        return True
+    return gain > FURTHER_SHARE * largest_gain and not removes_little(base, trials[0])
+
+
+def removes_little(base: Fitted, trial: Trial) -> bool:
+    """Whether the trial removes less than a tenth of what the base leaves far above the known noise."""
+    rest = base.mean_square - 1.0
+    return base.mean_square > NEAR_FLOOR and base.mean_square - trial.fitted.mean_square < LITTLE * rest
