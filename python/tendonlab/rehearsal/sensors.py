@@ -53,21 +53,19 @@ class Noise:
     repeated: bool
 
 
-def noise_of_rig(rig: Dataset, case: Case) -> Noise:
-    """As the repeats of the rig show it; without repeats the sensors' white noise, as stated or estimated from the
-    logs, and the library's default scatter of friction."""
-    floor = _floor(case) if _repeats(rig) else None
-    repeated = floor is not None and floor.repeated
+def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
+    """What the `floor` of repeats holds; without one the sensors' white noise, as stated or estimated from the logs,
+    and the library's default scatter of friction."""
     sensors = []
     for c in case.measured:
         signal = rig.signals[case.outputs[c]]
         resolution = signal.resolution or 0.0
-        if floor is not None and repeated:
+        if floor is not None:
             own = _without_rounding(floor.sd[c], floor.ar[c], resolution)
             sensors.append(Sensor(signal.name, own, tuple(floor.ar[c]), resolution))
         else:
             sensors.append(Sensor(signal.name, _white(signal, case, c), (), resolution))
-    return Noise(tuple(sensors), floor.tau if floor is not None and repeated else RUN_TO_RUN, repeated)
+    return Noise(tuple(sensors), RUN_TO_RUN if floor is None else floor.tau, floor is not None)
 
 
 def stated_noise(rig: Dataset) -> Noise:
@@ -85,19 +83,19 @@ def stated_noise(rig: Dataset) -> Noise:
     return Noise(tuple(sensors), RUN_TO_RUN, repeated=False)
 
 
-def _repeats(rig: Dataset) -> bool:
+def floor_of_repeats(rig: Dataset, case: Case) -> Floor | None:
+    """What the repeats of the rig leave, None where nothing repeats."""
     labels = [e.repeat for e in rig if e.repeat is not None]
-    return len(labels) > len(set(labels))
-
-
-def _floor(case: Case) -> Floor:
+    if len(labels) == len(set(labels)):
+        return None
     rough = rough_fit(case, _core.Cancel())
     initial = dict(zip(case.train, rough.initial, strict=True))
     seen = [
         sensitivities(case, rough.system, i, initial.get(i, case.own_mean(i).tolist()))
         for i in range(len(case.experiments))
     ]
-    return estimate(case, seen, case.train)
+    floor = estimate(case, seen, case.train)
+    return floor if floor.repeated else None
 
 
 def _without_rounding(innovation: float, memory: list[float], resolution: float) -> float:

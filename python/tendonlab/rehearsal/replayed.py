@@ -1,0 +1,66 @@
+"""Noise of the sensors that leaves, once replayed, what the repeats of the rig leave.
+
+A replay follows slow noise of the motion that it is told, so the floor holds less of that noise than the readings.
+Readings with the noise of the floor would lose the slow part twice, and every effect would show too early."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tendonlab.fitting.case import make_case
+from tendonlab.fitting.floor import estimate, sensitivities
+from tendonlab.fitting.noise import Floor
+from tendonlab.rehearsal.sensors import Noise, Sensor
+
+if TYPE_CHECKING:
+    from tendonlab.rehearsal.rig import SimulatedRig
+
+ROUNDS, DRAWS = 4, 3  # corrections, and sets of repeats that are simulated for each
+GRID = 4096  # frequencies, from 0 to the rate of the logs
+MOST = 16.0  # times the power by which a correction changes a frequency
+MEMORY = 12  # samples
+
+
+def as_replayed(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> Noise:
+    """The noise of `rigs`, corrected until their repeats leave the `floor` of the logs."""
+    again = [e for e in rigs.runs if e.repeat is not None]
+    rigs = replace(rigs, rig=replace(rigs.rig, experiments=tuple(again)), runs=tuple(again))
+    for _ in range(ROUNDS):
+        left = [_left(rigs, random) for _ in range(DRAWS)]
+        outputs = {signal.name: c for c, signal in enumerate(rigs.system.info.outputs)}
+        sensors = []
+        for sensor in rigs.noise.sensors:
+            c = outputs[sensor.name]
+            wanted = spectrum(floor.sd[c], floor.ar[c])
+            found = np.mean([spectrum(one.sd[c], one.ar[c]) for one in left], axis=0)
+            sensors.append(_with_power(sensor, np.clip(wanted / found, 1.0 / MOST, MOST)))
+        rigs = replace(rigs, noise=replace(rigs.noise, sensors=tuple(sensors)))
+    return rigs.noise
+
+
+def spectrum(sd: float, memory: Sequence[float]) -> np.ndarray:
+    """Power at each frequency of noise that `sd` drives through an autoregression."""
+    response = np.fft.fft(np.concatenate([[1.0], -np.asarray(memory, dtype=float)]), GRID)
+    return np.asarray(sd**2 / np.abs(response) ** 2)
+
+
+def _left(rigs: SimulatedRig, random: np.random.Generator) -> Floor:
+    """What the repeats of one simulated rig leave, replayed by the simulator that made them."""
+    case = make_case(rigs.noisy(random, rigs.system))
+    runs = range(len(case.experiments))
+    return estimate(case, [sensitivities(case, case.system, i, case.own_mean(i).tolist()) for i in runs], list(runs))
+
+
+def _with_power(sensor: Sensor, factor: np.ndarray) -> Sensor:
+    """The sensor with `factor` times the power at each frequency, by Yule and Walker."""
+    from scipy.linalg import solve_toeplitz
+
+    lags = np.fft.ifft(spectrum(sensor.noise, sensor.memory) * factor).real[: MEMORY + 1]
+    if not lags[0] > 0.0:
+        return sensor
+    memory = np.asarray(solve_toeplitz(lags[:-1] * (1.0 + 1e-9 * (np.arange(MEMORY) == 0)), lags[1:]))
+    return replace(sensor, noise=float(np.sqrt(max(lags[0] - memory @ lags[1:], 0.0))), memory=tuple(memory.tolist()))

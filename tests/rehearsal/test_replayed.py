@@ -1,0 +1,51 @@
+"""Noise of the sensors that leaves, once replayed, what the repeats of the rig leave."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tendonlab as tl
+from tendonlab.fitting.case import make_case
+from tendonlab.rehearsal.replayed import GRID, as_replayed, spectrum
+from tendonlab.rehearsal.rig import SimulatedRig, simulated_rig
+from tendonlab.rehearsal.sensors import Noise, Sensor, floor_of_repeats, noise_of_rig
+
+SLOW = Sensor("joint_angle", 2e-4, (0.97,))  # 0.8 mrad, a memory of 33 samples
+
+
+def repeated_rig(pendulum: Path) -> SimulatedRig:
+    """Six repeats of one motion, without a controller, of a rig whose sensor has slow noise."""
+    rig = tl.load(pendulum)
+    rigs = simulated_rig(rig)
+    runs = tuple(replace(rigs.runs[0], name=f"repeat-{k}", repeat="A") for k in range(6))
+    rigs = replace(rigs, runs=runs, noise=Noise((SLOW,), 0.008, repeated=True))
+    return replace(rigs, rig=rigs.noisy(np.random.default_rng(7), rigs.system))
+
+
+def slow_power(noise: Noise) -> float:
+    """Mean power below a 64th of the rate."""
+    return float(np.mean(spectrum(noise.sensors[0].noise, noise.sensors[0].memory)[: GRID // 64]))
+
+
+@pytest.mark.cpu(20)
+def test_slow_noise_that_the_replay_follows_is_given_back(pendulum: Path) -> None:
+    """The floor of the repeats alone holds a fraction of its power."""
+    rigs = repeated_rig(pendulum)
+    case = make_case(rigs.rig)
+    floor = floor_of_repeats(rigs.rig, case)
+    assert floor is not None
+    once = noise_of_rig(rigs.rig, case, floor)
+    true = slow_power(Noise((SLOW,), 0.0, repeated=True))
+    assert slow_power(once) < 0.5 * true
+    mended = as_replayed(replace(rigs, noise=once), floor, np.random.default_rng(0))
+    assert slow_power(once) < 0.7 * slow_power(mended)
+    assert 0.4 < slow_power(mended) / true < 2.0
+    assert mended.scatter == once.scatter
+
+
+def test_the_mean_power_is_the_variance() -> None:
+    sensor = Sensor("q", 0.1, (0.6, 0.2))
+    read = sensor.read(np.zeros(200_000), np.random.default_rng(1))
+    assert np.mean(spectrum(sensor.noise, sensor.memory)) == pytest.approx(read.var(), rel=0.03)
