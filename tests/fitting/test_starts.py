@@ -17,7 +17,7 @@ from tendonlab.fitting.case import make_case
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter, pose
 from tendonlab.fitting.starts import STEPS, cooled
-from tendonlab.rehearsal.rig import simulated_rig
+from tendonlab.rehearsal.build import simulated_rig
 
 
 class Fits:

@@ -10,7 +10,8 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.fitting.case import make_case
-from tendonlab.rehearsal.rig import TOLERANCE, SimulatedRig, simulated_rig
+from tendonlab.rehearsal.build import simulated_rig
+from tendonlab.rehearsal.rig import TOLERANCE, SimulatedRig
 from tendonlab.simulation.command import command_of
 from tendonlab.simulation.records import Controller, Experiment, NominalParameter, SignalSpec
 

@@ -8,8 +8,9 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.fitting.case import make_case
+from tendonlab.rehearsal.build import simulated_rig
 from tendonlab.rehearsal.replayed import GRID, as_replayed, spectrum
-from tendonlab.rehearsal.rig import SimulatedRig, simulated_rig
+from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.sensors import Noise, Sensor, floor_of_repeats, noise_of_rig
 
 SLOW = Sensor("joint_angle", 2e-4, (0.97,))  # 0.8 mrad, a memory of 33 samples

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import tendonlab as tl
+from tendonlab.rehearsal.build import simulated_rig
 from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs
-from tendonlab.rehearsal.rig import simulated_rig
 from tendonlab.rehearsal.sensors import Sensor
 from tendonlab.rehearsal.sizes import Gauge, withheld_effects
 from tendonlab.simulation.command import command_of

@@ -17,10 +17,11 @@ from tendonlab.data import Dataset, load, require_dataset
 from tendonlab.diagnosis.diagnose import diagnose as library_diagnose
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.progress import track
+from tendonlab.rehearsal.build import simulated_rig
 from tendonlab.rehearsal.cases import NOTHING, RehearsalCase, ordered_cases
 from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs
 from tendonlab.rehearsal.result import Rehearsal
-from tendonlab.rehearsal.rig import SimulatedRig, simulated_rig
+from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.run import Diagnose, Progress, Row, Work, run_cases
 from tendonlab.rehearsal.settings import settings_of
 from tendonlab.rehearsal.sizes import Gauge, Ladder, withheld_effects

@@ -7,17 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.floor import estimate, sensitivities
 from tendonlab.fitting.noise import Floor
+from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.sensors import Noise, Sensor
-
-if TYPE_CHECKING:
-    from tendonlab.rehearsal.rig import SimulatedRig
 
 ROUNDS, DRAWS = 4, 3  # corrections, and sets of repeats that are simulated for each
 GRID = 4096  # frequencies, from 0 to the rate of the logs
