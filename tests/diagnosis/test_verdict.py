@@ -115,6 +115,14 @@ def test_probabilities_of_effects_are_given_the_other_selected_ones() -> None:
     assert effects == pytest.approx({"a": 0.8, "b": 0.6, "c": 0.15 + 0.3 + 0.8 * 0.6 * 0.2})
 
 
+def test_a_rival_is_no_likelier_than_what_was_selected_in_its_place() -> None:
+    """Though it may also be there beside it. What was selected itself is not bounded by the others."""
+    tie, more = contest((), "a", a=0.48, c=0.48, none=0.04), contest(("a",), None, c=0.2, none=0.8)
+    assert marginals((tie, more))[0] == pytest.approx({"a": 0.48, "c": 0.48})
+    first, second = contest(("b",), "a", a=0.5, b=0.3, none=0.2), contest(("a",), "b", b=0.9, none=0.1)
+    assert marginals((first, second))[0] == pytest.approx({"a": 0.5, "b": 1.0})
+
+
 def test_sets_are_each_alternative_with_what_was_selected_besides() -> None:
     _, sets = marginals((FIRST, SECOND, LAST))
     found = {tuple(s["effects"]): s["probability"] for s in sets}

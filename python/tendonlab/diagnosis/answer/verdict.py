@@ -139,6 +139,11 @@ def marginals(rounds: Sequence[Round], *, there: float = 1.0) -> tuple[dict[str,
             is_own = contest.accepted is not None and name == contest.accepted.effect
             if together and not (is_own and k + 1 < len(rounds)):  # all that were selected together count once
                 sets.append({"effects": together, "probability": there * others * p})
+    accepted = [contest.accepted.effect for contest in rounds if contest.accepted]
+    for contest in rounds:
+        if contest.accepted:  # a rival, which may be there instead of it or beside it, is no likelier
+            for name in {n for n in contest.probability if n is not None}.difference(accepted):
+                effects[name] = min(effects[name], effects[contest.accepted.effect])
     sets.sort(key=lambda s: -float(s["probability"]))
     return effects, [s for s in sets if s["probability"] > 1e-4][:12]
 
