@@ -46,6 +46,20 @@ def test_slow_noise_that_the_replay_follows_is_given_back(pendulum: Path) -> Non
     assert mended.scatter == once.scatter
 
 
+@pytest.mark.cpu(20)
+def test_repeats_may_be_held_out_and_a_sensor_silent(pendulum: Path) -> None:
+    """No noise stays no noise."""
+    rigs = repeated_rig(pendulum)
+    case = make_case(rigs.rig)
+    floor = floor_of_repeats(rigs.rig, case)
+    assert floor is not None
+    held = tuple(replace(run, split="test") for run in rigs.runs)
+    noise = as_replayed(replace(rigs, runs=held), floor, np.random.default_rng(0))
+    assert noise.sensors[0].noise > 0.0
+    silent = Noise((Sensor("joint_angle", 0.0),), 0.008, repeated=True)
+    assert as_replayed(replace(rigs, noise=silent), floor, np.random.default_rng(0)).sensors[0].noise == 0.0
+
+
 def test_the_mean_power_is_the_variance() -> None:
     sensor = Sensor("q", 0.1, (0.6, 0.2))
     read = sensor.read(np.zeros(200_000), np.random.default_rng(1))

@@ -148,17 +148,20 @@ def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     most = max(1.0, min(LONGEST, PART * shortest) / logs.step)
     sizes = np.unique(np.round(GROWTH ** np.arange(0.0, np.log(most) / np.log(GROWTH) + 1e-9))).astype(int)
     tried = np.concatenate([-sizes[::-1], [0], sizes])
-    cost, left = np.empty((len(tried), num)), []
-    for k, steps in enumerate(tried):
-        moved = logs.rolled(equation.measured, int(steps)).at(kept)
+
+    def earlier(steps: int) -> tuple[Logs, np.ndarray]:
+        """The logs with all outputs that much earlier, and what the equations leave there, by their levels."""
+        moved = logs.rolled(equation.measured, steps).at(kept)
         # what the parameters change follows from the motion: it moves with the outputs
         there = np.clip(np.arange(len(kept)) + round(steps / stride), 0, len(kept) - 1)
-        residual = equation.evaluate(equation.along(moved), len(kept)) + changed[:, there]
-        left.append(residual)
-        surprise = np.sum(np.log1p((residual / scale) ** 2), axis=0)
-        cost[k] = np.bincount(moved.run, surprise, num)
+        return moved, (equation.evaluate(equation.along(moved), len(kept)) + changed[:, there]) / scale
+
+    cost = np.empty((len(tried), num))
+    for k, steps in enumerate(tried):
+        moved, left = earlier(int(steps))
+        cost[k] = np.bincount(moved.run, np.sum(np.log1p(left**2), axis=0), num)
     common = int(np.argmin(np.sum(cost, axis=1)))
-    own = _by_friction(equation, logs.rolled(equation.measured, int(tried[common])).at(kept), left[common], scale)
+    own = _by_friction(equation, *earlier(int(tried[common])))
     differs = cost[common] - np.min(cost, axis=0) > OWN / ROUGH_SHARE
     best = np.where(differs, np.argmin(cost, axis=0), common)
     inside = (best > 0) & (best < len(tried) - 1)
@@ -168,7 +171,7 @@ def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     return np.where(inside, tried[best], 0) * logs.step, np.where(far, nats, 0.0)
 
 
-def _by_friction(equation: Equation, logs: Logs, residual: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray:
     """By how much dry and viscous friction of its own lowers the surprise of each experiment, as a cold one needs,
     beyond what it lowers that of the others: friction that the simulator lacks helps all of them."""
     saved = np.zeros(len(equation.dataset.experiments))
@@ -177,7 +180,7 @@ def _by_friction(equation: Equation, logs: Logs, residual: np.ndarray, scale: np
         columns = np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300)], axis=1)
         for i in range(len(saved)):
             here = logs.run == i
-            saved[i] += _saved(residual[k, here] / scale[k], columns[here])
+            saved[i] += _saved(left[k, here], columns[here])
     return np.maximum(saved - np.median(saved), 0.0)
 
 

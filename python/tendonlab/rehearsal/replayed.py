@@ -24,17 +24,18 @@ MEMORY = 12  # samples
 
 def as_replayed(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> Noise:
     """The noise of `rigs`, corrected until their repeats leave the `floor` of the logs."""
-    again = [e for e in rigs.runs if e.repeat is not None]
-    rigs = replace(rigs, rig=replace(rigs.rig, experiments=tuple(again)), runs=tuple(again))
+    again = tuple(replace(e, split="train") for e in rigs.runs if e.repeat is not None)
+    rigs = replace(rigs, rig=replace(rigs.rig, experiments=again), runs=again)
+    outputs = {signal.name: c for c, signal in enumerate(rigs.system.info.outputs)}
     for _ in range(ROUNDS):
         left = [_left(rigs, random) for _ in range(DRAWS)]
-        outputs = {signal.name: c for c, signal in enumerate(rigs.system.info.outputs)}
         sensors = []
         for sensor in rigs.noise.sensors:
             c = outputs[sensor.name]
             wanted = spectrum(floor.sd[c], floor.ar[c])
             found = np.mean([spectrum(one.sd[c], one.ar[c]) for one in left], axis=0)
-            sensors.append(_with_power(sensor, np.clip(wanted / found, 1.0 / MOST, MOST)))
+            factor = np.divide(wanted, found, out=np.ones(GRID), where=found > 0.0)
+            sensors.append(_with_power(sensor, np.clip(factor, 1.0 / MOST, MOST)))
         rigs = replace(rigs, noise=replace(rigs.noise, sensors=tuple(sensors)))
     return rigs.noise
 
