@@ -90,10 +90,10 @@ identify::Problem make_problem(const std::string& kind, const std::vector<double
 
 py::dict to_dict(identify::Result of) {
   py::list residuals, jacobian, jacobian_initial;
-  for (auto& task : of.tasks) {
-    residuals.append(py::cast(std::move(task.residual)));
-    jacobian.append(py::cast(std::move(task.by_free)));
-    jacobian_initial.append(py::cast(std::move(task.by_initial)));
+  for (const auto& task : of.tasks) {
+    residuals.append(py::cast(Eigen::VectorXd(task.residual())));
+    jacobian.append(py::cast(RowMatrix(task.by_free())));
+    jacobian_initial.append(py::cast(RowMatrix(task.by_initial())));
   }
   return py::dict(py::arg("values") = of.values, py::arg("x") = of.x, py::arg("initial") = of.initial,
                   py::arg("cost") = of.cost, py::arg("prior_cost") = of.prior_cost, py::arg("converged") = of.converged,

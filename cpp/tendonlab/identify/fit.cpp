@@ -11,7 +11,7 @@
 #include <exception>
 
 #include "tendonlab/core/error.hpp"
-#include "tendonlab/identify/predict.hpp"
+#include "tendonlab/identify/task_cost.hpp"
 
 namespace tendonlab::identify {
 namespace {
@@ -39,46 +39,6 @@ class Coordinates {
   Eigen::Index begin(std::size_t task) const { return task == 0 ? 0 : ends[task - 1]; }
   Vector all;
   std::vector<Eigen::Index> ends;
-};
-
-/// Hands one experiment to Ceres. No exception may cross it: the first one is kept, and told after the solve.
-class TaskCost final : public ceres::CostFunction {
- public:
-  TaskCost(Remembered& predicted, Eigen::Index rows, const Cancel* stop, std::exception_ptr& first)
-      : prediction(predicted), cancel(stop), thrown(first) {
-    const Prediction& of = prediction.of();
-    set_num_residuals(static_cast<int>(rows));
-    if (of.num_free() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.num_free()));
-    if (of.num_initial() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.num_initial()));
-  }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    if (cancel && cancel->load()) return false;
-    try {
-      const Prediction& of = prediction.of();
-      const std::size_t free_blocks = of.num_free() > 0 ? 1 : 0;
-      const auto view = [&](std::size_t block, Eigen::Index size) {
-        return size > 0 ? Vector(Eigen::Map<const Vector>(blocks[block], size)) : Vector();
-      };
-      const Linearised& at =
-          prediction.at(view(0, of.num_free()), view(free_blocks, of.num_initial()), jacobians != nullptr);
-      Eigen::Map<Vector>(residuals, num_residuals()) = at.residual;
-      const auto fill = [&](std::size_t block, const RowMatrix& derivative) {
-        if (jacobians && derivative.cols() > 0 && jacobians[block])
-          Eigen::Map<RowMatrix>(jacobians[block], derivative.rows(), derivative.cols()) = derivative;
-      };
-      fill(0, at.by_free);
-      fill(free_blocks, at.by_initial);
-      return true;
-    } catch (...) {
-      if (!thrown) thrown = std::current_exception();
-      return false;
-    }
-  }
-
- private:
-  Remembered& prediction;
-  const Cancel* cancel;
-  std::exception_ptr& thrown;
 };
 
 /// Coordinates, by number.
@@ -289,7 +249,7 @@ Result describe(const Problem& problem, Predictions& predictions, const Vector& 
     of.tasks.push_back(predictions[e].at(x, z[e], true));
     of.initial.push_back(predictions[e].of().states(z[e]));
     of.prior_cost += 0.5 * z[e].squaredNorm();
-    of.cost += 0.5 * (z[e].squaredNorm() + of.tasks.back().residual.squaredNorm());
+    of.cost += 0.5 * (z[e].squaredNorm() + of.tasks.back().residual().squaredNorm());
   }
   return of;
 }
@@ -301,7 +261,7 @@ Places pressed(const Problem& problem, const Vector& x, const Result& at) {
     for (const int k : on_bound(problem, x, side)) {
       const Free& free = problem.free[static_cast<std::size_t>(k)];
       double slope = std::isfinite(free.sd) ? (x(k) - free.mean) / (free.sd * free.sd) : 0.0;
-      for (const Linearised& task : at.tasks) slope += task.by_free.col(k).dot(task.residual);
+      for (const Linearised& task : at.tasks) slope += task.products(k, task.products.cols() - 1);
       if (side * slope < 0) against.push_back(k);
     }
   std::sort(against.begin(), against.end());
@@ -386,8 +346,7 @@ Result fit(const Problem& problem, const Options& options) {
     if (z[e].size() > 0) blocks.push_back(z[e].data());
     if (blocks.empty())
       throw ParameterError("free: none; expected at least one free parameter or initial state a task");
-    const auto rows = problem.tasks[e].whitening->rows();
-    solved.AddResidualBlock(new TaskCost(predictions[e], rows, options.cancel, thrown), nullptr, blocks);
+    solved.AddResidualBlock(new TaskCost(predictions[e], options.cancel, thrown), nullptr, blocks);
   }
   add_priors(problem, x, z, solved);
   add_bounds(problem, x, solved);

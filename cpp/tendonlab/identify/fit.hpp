@@ -71,8 +71,13 @@ struct Options {
 
 /// Residuals of one experiment in noise standard deviations, with derivatives by the coordinates.
 struct Linearised {
-  Eigen::VectorXd residual;
-  RowMatrix by_free, by_initial;
+  Eigen::MatrixXd columns;   ///< derivatives by the free parameters, by the task's own unknowns, and the residuals
+  Eigen::MatrixXd products;  ///< of all columns with one another; none without derivatives
+  Eigen::Index num_free = 0;
+
+  auto residual() const { return columns.rightCols<1>(); }
+  auto by_free() const { return columns.leftCols(num_free); }
+  auto by_initial() const { return columns.middleCols(num_free, columns.cols() - 1 - num_free); }
 };
 struct Result {
   std::vector<double> values, x;             ///< all parameters; coordinates of the free ones

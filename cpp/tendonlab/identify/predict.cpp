@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tendonlab/core/columns.hpp"
 #include "tendonlab/core/error.hpp"
 
 namespace tendonlab::identify {
@@ -131,15 +132,29 @@ integrate::Experiment Prediction::experiment_at(const Eigen::VectorXd& z) const 
   return experiment;
 }
 
-Eigen::MatrixXd Prediction::whitened_gradient(const integrate::Trajectory& run) const {
-  const Whitening& whitening = *task.whitening;
-  Eigen::MatrixXd all(whitening.rows(), run.width);
-  const Eigen::Index cells = static_cast<Eigen::Index>(run.channels) * run.samples;
-  for (Eigen::Index k = 0; k < run.width; ++k)
-    whitening.filter(Eigen::Map<const RowMatrix>(run.gradient.data() + k * cells, run.channels, run.samples),
-                     all.col(k));
-  whitening.shrink(all);
-  return all;
+void Prediction::differentiate(const integrate::Trajectory& run, const Configuration& with, const Eigen::VectorXd& x,
+                               const Eigen::VectorXd& z, Linearised& out) const {
+  const auto filtered = [&](Eigen::Index seed, double factor, Eigen::Ref<Eigen::VectorXd> into) {
+    const double* from = run.gradient.data() + seed * run.channels * run.samples;
+    task.whitening->filter(Eigen::Map<const RowMatrix>(from, run.channels, run.samples), into, factor);
+  };
+  Eigen::Index seed = 0;
+  for (const std::size_t k : moving) {
+    const Free& free = problem.free[k];
+    const auto c = static_cast<Eigen::Index>(k);
+    filtered(seed++, free.slope(x(c)) * factor(free.index, z), out.columns.col(c));
+  }
+  Eigen::Index own = num_free();
+  for (const FreeState& state : task.initial) filtered(seed++, state.sd, out.columns.col(own++));
+  Eigen::VectorXd part(task.scatter.empty() ? 0 : out.columns.rows());
+  for (const Scatter& group : task.scatter) {
+    auto by_factor = out.columns.col(own++);
+    for (const std::size_t p : group.parameters) {
+      filtered(column(p), group.sd * with.values[p], part);
+      by_factor += part;
+    }
+  }
+  task.whitening->shrink(out.columns.leftCols(own));
 }
 
 Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bool with_derivatives) const {
@@ -147,28 +162,22 @@ Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bo
   const auto run = problem.model.simulate(with, experiment_at(z),
                                           with_derivatives ? seeds : std::vector<integrate::Seed>(), settings);
   Linearised out;
-  out.residual = task.whitening->residual(Eigen::Map<const RowMatrix>(run.value.data(), run.channels, run.samples));
+  out.num_free = with_derivatives ? num_free() : 0;
+  const Eigen::Index rows = task.whitening->rows(), all = with_derivatives ? num_free() + num_initial() + 1 : 1;
+  out.columns.setZero(rows, all);
+  out.columns.rightCols<1>() =
+      task.whitening->residual(Eigen::Map<const RowMatrix>(run.value.data(), run.channels, run.samples));
+  bool finite = true;
   if (with_derivatives) {
-    const Eigen::MatrixXd gradient = whitened_gradient(run);
-    out.by_free = RowMatrix::Zero(out.residual.size(), num_free());
-    out.by_initial.resize(out.residual.size(), num_initial());
-    const auto num_moving = static_cast<Eigen::Index>(moving.size());
-    for (Eigen::Index c = 0; c < num_moving; ++c) {
-      const auto k = static_cast<Eigen::Index>(moving[static_cast<std::size_t>(c)]);
-      const Free& free = problem.free[static_cast<std::size_t>(k)];
-      out.by_free.col(k) = free.slope(x(k)) * factor(free.index, z) * gradient.col(c);
-    }
-    const auto num_states = static_cast<Eigen::Index>(task.initial.size());
-    for (Eigen::Index k = 0; k < num_states; ++k)
-      out.by_initial.col(k) = task.initial[static_cast<std::size_t>(k)].sd * gradient.col(num_moving + k);
-    for (std::size_t g = 0; g < task.scatter.size(); ++g) {
-      auto by_factor = out.by_initial.col(num_states + static_cast<Eigen::Index>(g));
-      by_factor.setZero();
-      for (const std::size_t p : task.scatter[g].parameters)
-        by_factor += task.scatter[g].sd * with.values[p] * gradient.col(column(p));
-    }
+    differentiate(run, with, x, z, out);
+    out.products.resize(all, all);
+    multiply_columns(out.columns.data(), static_cast<std::size_t>(rows), static_cast<std::size_t>(all),
+                     out.products.data());
+    finite = out.products.diagonal().allFinite();
+  } else {
+    finite = out.columns.allFinite();
   }
-  if (!out.residual.allFinite() || !out.by_free.allFinite() || !out.by_initial.allFinite())
+  if (!finite)
     throw NumericalError(sentence(problem.model.info().kind,
                                   ": outputs or their derivatives are not finite; a parameter ",
                                   "may be far from its data, or the tolerance too large"));

@@ -27,7 +27,9 @@ class Prediction {
   double factor(std::size_t parameter, const Eigen::VectorXd& z) const;
   Configuration configuration_at(const Eigen::VectorXd& x, const Eigen::VectorXd& z) const;
   integrate::Experiment experiment_at(const Eigen::VectorXd& z) const;
-  Eigen::MatrixXd whitened_gradient(const integrate::Trajectory& run) const;
+  /// Fills the columns of the derivatives from those of a simulation.
+  void differentiate(const integrate::Trajectory& run, const Configuration& with, const Eigen::VectorXd& x,
+                     const Eigen::VectorXd& z, Linearised& out) const;
 
   const Problem& problem;
   const Task& task;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tendonlab/core/columns.hpp"
 #include "tendonlab/core/error.hpp"
 
 namespace tendonlab::identify {
@@ -64,17 +65,15 @@ Cells Whitening::cells() const {
   return of;
 }
 
-void Whitening::filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out) const {
-  Eigen::Index row = 0;
+void Whitening::filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out,
+                       double factor) const {
+  double* row = out.data();
   for (const Run& run : runs) {
     const ChannelNoise& of = noise[run.channel];
-    const auto signal = signals.row(static_cast<Eigen::Index>(run.channel)).transpose();
-    auto filtered = out.segment(row, run.length);
-    filtered = signal.segment(run.first, run.length);
-    Eigen::Index lag = 0;
-    for (const double a : of.ar) filtered -= a * signal.segment(run.first - ++lag, run.length);
-    filtered /= of.sd;
-    row += run.length;
+    const double* signal = signals.row(static_cast<Eigen::Index>(run.channel)).data() + run.first;
+    const auto length = static_cast<std::size_t>(run.length);
+    filter_column(signal, length, of.ar.data(), of.ar.size(), factor / of.sd, row);
+    row += length;
   }
 }
 

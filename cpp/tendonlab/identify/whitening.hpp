@@ -37,8 +37,8 @@ class Whitening {
   Eigen::VectorXd apply(const Eigen::Ref<const RowMatrix>& signals) const;
   /// Whitened differences of `signals` from what was measured.
   Eigen::VectorXd residual(const Eigen::Ref<const RowMatrix>& signals) const;
-  /// The filter alone: A signals.
-  void filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out) const;
+  /// The filter alone: factor A signals.
+  void filter(const Eigen::Ref<const RowMatrix>& signals, Eigen::Ref<Eigen::VectorXd> out, double factor = 1.0) const;
   /// What follows the filter, on each column of (rows, m).
   void shrink(Eigen::Ref<Eigen::MatrixXd> columns) const;
 

@@ -1,8 +1,7 @@
 #pragma once
 // The inputs of a running simulation: which pieces of its signals hold, when they change, what the loop holds
 // meanwhile.
-#include <deque>
-
+#include "tendonlab/core/queue.hpp"
 #include "tendonlab/integrate/readings.hpp"
 
 namespace tendonlab::integrate {
@@ -62,9 +61,9 @@ class Drive : public Readings<T> {
     move(from.loop.reference, reference_piece, shift, now);
     while (!pending.empty() && pending.front().due <= now) {
       held = pending.front().value;
-      pending.pop_front();
+      pending.pop();
     }
-    for (; !echoes.empty() && echoes.front() <= now; echoes.pop_front()) past.advance();
+    for (; !echoes.empty() && echoes.front() <= now; echoes.pop()) past.advance();
   }
   /// The sampled controller reads its sensor when its clock ticks; the command takes effect after the delay.
   template <int n>
@@ -85,7 +84,7 @@ class Drive : public Readings<T> {
     last_reading = y, last_reference = r;
     u = u + at_tick(loop.disturbance, ticked_disturbance, now);
     if (first) held = u;  // before the record the command has its first value
-    pending.push_back({tick_time(tick) + shift, u});
+    pending.push({tick_time(tick) + shift, u});
     ++tick;
     pass_command(now);
   }
@@ -102,7 +101,7 @@ class Drive : public Readings<T> {
   void echo(double now) {
     if (!remembers || samples() || lateness() <= Past<T>::shortest) return;
     past.split();
-    echoes.push_back(now + lateness());
+    echoes.push(now + lateness());
   }
   bool hears_echo(double now) const { return !echoes.empty() && echoes.front() <= now; }
 
@@ -132,8 +131,8 @@ class Drive : public Readings<T> {
   }
   double tick_time(long k) const { return from.time.front() + static_cast<double>(k) * from.loop.sample_time; }
 
-  std::deque<Command> pending;
-  std::deque<double> echoes;  ///< when kinks of the past motion reach the loop
+  Queue<Command> pending;
+  Queue<double> echoes;  ///< when kinks of the past motion reach the loop
   long tick = 0;
   int ticked_reference = 0, ticked_disturbance = 0;
   T last_reading{}, last_reference{};

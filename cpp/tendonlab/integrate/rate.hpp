@@ -59,6 +59,26 @@ template <int dof, int nz>
 const State<double, dof, nz>& values(const State<double, dof, nz>& y) {
   return y;
 }
+/// A state in the scalar of decisions: itself but where it has derivatives.
+template <class S, int dof, int nz>
+TENDONLAB_INLINE decltype(auto) plainly(const State<S, dof, nz>& y) {
+  if constexpr (std::is_same_v<Plain<S>, S>)
+    return (y);
+  else
+    return values(y);
+}
+/// A state with derivatives of 0.
+template <class T, int dof, int nz>
+TENDONLAB_INLINE State<T, dof, nz> lifted(const State<double, dof, nz>& y) {
+  State<T, dof, nz> out;
+  for (std::size_t j = 0; j < dof; ++j) {
+    out.at.position[j] = T(y.at.position[j]);
+    out.at.velocity[j] = T(y.at.velocity[j]);
+  }
+  out.at.time = T(y.at.time);
+  for (std::size_t i = 0; i < nz; ++i) out.memory[i] = T(y.memory[i]);
+  return out;
+}
 template <class S, int dof, int nz>
 struct Rate {
   std::array<S, static_cast<std::size_t>(dof)> acceleration{};

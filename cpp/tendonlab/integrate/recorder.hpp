@@ -33,6 +33,10 @@ class Recorder {
   /// From now on writes several samples of a step together: `of`, which outlives this, has the same numbers in every
   /// lane.
   void write_together(const Of<Lanes>& of) { together.emplace(of, experiment); }
+  /// Does it ask for the state between the ends of a step?
+  bool looks_inside(const Interval& over) const {
+    return late || (next[0] < time.size() && time[next[0]] < (1.0 - at_end) * over.length + over.start);
+  }
   /// Writes the samples of one step. What the ports do is recorded without derivatives, from `plain_modes`.
   template <class Values, class Inputs>
   [[gnu::flatten]] void operator()(const Step<Y>& s, const Interval& over, const PortModes<System, T>& port_modes,
@@ -45,7 +49,8 @@ class Recorder {
       write_late(s, over, reached, port_modes, in);
     else
       for (; next[0] < time.size() && time[next[0]] <= reached; ++next[0]) {
-        Y y = s.at((time[next[0]] - over.start) * per_length);
+        const double share = (time[next[0]] - over.start) * per_length;
+        Y y = s.bare_inside && share > 1.0 - at_end ? s.to : s.at(share);
         y.at.time = T(time[next[0]]);
         Instant<System, T, Inputs> instant(port_modes, y, in);
         const auto seen = observe(system, instant, wanted);
@@ -61,6 +66,7 @@ class Recorder {
   }
 
  private:
+  static constexpr double at_end = 1e-10;  ///< share of a step from its end that is the end
   void write(std::size_t channel, std::size_t sample, const T& seen) {
     if (!rows[channel]) return;
     const T shown = system.sensor[channel].apply(seen);

@@ -3,6 +3,7 @@
 // carry the derivatives of `T`; whatever is decided is decided by plain numbers.
 #include "tendonlab/core/error.hpp"
 #include "tendonlab/integrate/contact.hpp"
+#include "tendonlab/integrate/crossing.hpp"
 #include "tendonlab/integrate/drive.hpp"
 #include "tendonlab/integrate/explicit_reach.hpp"
 #include "tendonlab/integrate/growth.hpp"
@@ -41,8 +42,11 @@ class Simulation {
     begin();
     while (!done()) {
       const Attempt next = plan(trajectory);
+      const auto change_at_end = [&](const Y& to) {
+        return change(plain_system, values(to), plain_frame, drive, next.length);
+      };
       take(next,
-           next.explicitly ? advance_explicitly<Kutta>(system, y, frame, drive, next.length)
+           next.explicitly ? advance_explicitly<Kutta>(system, y, frame, drive, next.length, change_at_end)
                            : advance<Tableau>(system, y, frame, drive, next.length),
            trajectory, record);
     }
@@ -103,7 +107,7 @@ class Simulation {
   }
   /// Accepts the step or not, and passes the event or the jump of the inputs that it ends on.
   template <class Record>
-  void take(const Attempt& tried, const Step<Y>& step, Trajectory& trajectory, Record&& record) {
+  void take(const Attempt& tried, Step<Y> step, Trajectory& trajectory, Record&& record) {
     const double wish = tried.explicitly ? growth<Kutta>(step) : growth<Tableau>(step);
     if (wish > 0)
       accept(tried, step, wish, earliest_crossing(values(step)), trajectory, record);
@@ -116,7 +120,7 @@ class Simulation {
   void take_judged(const Attempt& tried, double wish, bool crosses, GetStep&& step, Trajectory& trajectory,
                    Record&& record) {
     if (!(wish > 0)) return reject(tried, wish, trajectory);
-    const Step<Y> s = step();
+    Step<Y> s = step();
     accept(tried, s, wish, crosses || plain_frame.holds ? earliest_crossing(values(s)) : Crossing{}, trajectory,
            record);
   }
@@ -127,13 +131,6 @@ class Simulation {
   static constexpr double on_guard = 1e-13;  ///< up to here beyond its guard a mode holds
 
  private:
-  struct Crossing {
-    int mode = -1;
-    double share = 2;
-    double toward = 0;   ///< which way a gap is crossed
-    bool stale = false;  ///< the step began on its guard, in a mode that does not hold
-    bool past = false;   ///< it began beyond its guard, by more than rounding
-  };
   static constexpr double past_guard = 1e-14;
   /// Growth of the next step from which on a Rosenbrock step is so exact that its dense output, which is less accurate
   /// inside than at the end, may tell the state at an event. That of an explicit step is as exact as its error says.
@@ -160,7 +157,7 @@ class Simulation {
   }
   /// The error allows the step; the first event in it, if there is one, may not.
   template <class Record>
-  void accept(const Attempt& tried, const Step<Y>& step, double wish, const Crossing& first, Trajectory& trajectory,
+  void accept(const Attempt& tried, Step<Y>& step, double wish, const Crossing& first, Trajectory& trajectory,
               Record&& record) {
     const double length = tried.length;
     explicit_reach.learn(tried.explicitly, length, wish);
@@ -168,8 +165,11 @@ class Simulation {
       return aim(first, length, trajectory);
     retakes = false;
     const double taken = first.mode >= 0 ? first.share * length : length;
-    record(step, Interval{t, length, taken}, PortModes<System, T>{contact, frame},
-           PortModes<Values, double>{plain_contact, plain_frame}, drive);
+    const Interval over{t, length, taken};
+    if (step.bare_inside && (first.mode >= 0 || drive.remembers || record.looks_inside(over)))
+      bend(step, change(system, step.from, frame, drive, length), change(system, step.to, frame, drive, length));
+    record(step, over, PortModes<System, T>{contact, frame}, PortModes<Values, double>{plain_contact, plain_frame},
+           drive);
     if (drive.remembers) drive.past.add(step, t, length, taken, drive.from.loop.axis, drive.lateness());
     y = first.mode >= 0 ? step.at(first.share) : step.to;
     t = first.mode >= 0 ? t + taken : tried.lands ? std::min(kink, end) : tried.pauses ? tried.knot : t + taken;

@@ -24,7 +24,9 @@ struct Step;
 template <class F, int dof, int nz>
 struct Step<State<F, dof, nz>> {
   using Y = State<F, dof, nz>;
-  Y from, to, first, second, third, error;
+  Y from, to, first, second, third;
+  State<Plain<F>, dof, nz> error;
+  bool bare_inside = false;  ///< lack `first` and `second` their derivatives?
   /// The state at the share `s` of the step; its time is left to the caller.
   template <class S>
   State<Blend<S, F>, dof, nz> at(const S& s) const {
@@ -48,7 +50,7 @@ struct Step<State<F, dof, nz>> {
 template <class Y>
 auto values(const Step<Y>& s) {
   return Step<std::decay_t<decltype(values(s.from))>>{values(s.from),   values(s.to),    values(s.first),
-                                                      values(s.second), values(s.third), values(s.error)};
+                                                      values(s.second), values(s.third), s.error};
 }
 template <int dof, int nz>
 const auto& values(const Step<State<double, dof, nz>>& s) {
@@ -115,7 +117,7 @@ template <class Tableau, class System, class T, class Inputs>
       [&](auto i) TENDONLAB_ALWAYS { stage<Tableau, i>(system, y, frame, in, h, per_h, blocks, solver, at, k); });
   // Stiffly accurate: the last stage and its increment, which is the error.
   add(at, 1.0, k[Tableau::stages - 1]);
-  Step<Y> s{y, at, {}, {}, {}, k[Tableau::stages - 1]};
+  Step<Y> s{y, at, {}, {}, {}, plainly(k[Tableau::stages - 1])};
   unroll<Tableau::stages>([&](auto j) TENDONLAB_ALWAYS {
     add(s.first, Tableau::D[0][j], k[j]);
     add(s.second, Tableau::D[1][j], k[j]);
@@ -139,29 +141,52 @@ TENDONLAB_INLINE StateOf<System, T> change(const System& system, const StateOf<S
   return k;
 }
 
-/// An explicit step: less work than a Rosenbrock step, for steps so short that nothing is stiff (`fastest_rate`).
-template <class Tableau, class System, class T, class Inputs>
-[[gnu::flatten]] Step<StateOf<System, T>> advance_explicitly(const System& system, const StateOf<System, T>& y,
-                                                             const Frame<System, T>& frame, const Inputs& in,
-                                                             Plain<T> h) {
-  using Y = StateOf<System, T>;
-  constexpr int last = Tableau::stages - 1;
-  Y k[Tableau::stages], at;
-  for (int i = 0; i <= last; ++i) {
-    at = y;
-    for (int j = 0; j < i; ++j) add(at, Tableau::A[i][j], k[j]);
-    at.at.time = y.at.time + Tableau::c[i] * h;
-    k[i] = change(system, at, frame, in, h);
-  }
-  // The last stage stands at the end of the step. The dense output is the cubic through both ends and their rates.
-  Step<Y> s{y, at, k[0], {}, {}, {}};
-  Y rise = at;
-  add(rise, -1.0, y);
+/// The inside of a step: the cubic through both ends and their changes over the step.
+template <class Y>
+TENDONLAB_INLINE void bend(Step<Y>& s, const Y& at_start, const Y& at_end) {
+  Y rise = s.to;
+  add(rise, -1.0, s.from);
+  s.first = at_start, s.second = Y{};
   add(s.first, -1.0, rise);
   add(s.second, 2.0, rise);
-  add(s.second, -1.0, k[0]);
-  add(s.second, -1.0, k[last]);
-  for (int i = 0; i <= last; ++i) add(s.error, Tableau::error[i], k[i]);
+  add(s.second, -1.0, at_start);
+  add(s.second, -1.0, at_end);
+}
+
+/// An explicit step: less work than a Rosenbrock step, for steps so short that nothing is stiff (`fastest_rate`).
+/// `at_end(to)`: the change at the end of the step, which its error and its inside need. Without derivatives, those of
+/// the inside are left to `bend`: few steps are looked into.
+template <class Tableau, class System, class T, class Inputs, class AtEnd>
+[[gnu::flatten]] Step<StateOf<System, T>> advance_explicitly(const System& system, const StateOf<System, T>& y,
+                                                             const Frame<System, T>& frame, const Inputs& in,
+                                                             Plain<T> h, AtEnd&& at_end) {
+  using Y = StateOf<System, T>;
+  constexpr int last = Tableau::stages - 1;
+  Y k[last];
+  Step<Y> s{y, y, {}, {}, {}, {}};
+  for (int i = 0; i <= last; ++i) {
+    s.to = y;
+    for (int j = 0; j < i; ++j) add(s.to, Tableau::A[i][j], k[j]);
+    s.to.at.time = y.at.time + Tableau::c[i] * h;
+    if (i < last) k[i] = change(system, s.to, frame, in, h);
+  }
+  const auto end = at_end(s.to);
+  for (int i = 0; i < last; ++i) add(s.error, Tableau::error[i], plainly(k[i]));
+  add(s.error, Tableau::error[last], plainly(end));
+  if constexpr (std::is_same_v<std::decay_t<decltype(end)>, Y>) {
+    bend(s, k[0], end);
+  } else {
+    auto bare = values(s);
+    bend(bare, values(k[0]), end);
+    s.first = lifted<T>(bare.first), s.second = lifted<T>(bare.second), s.bare_inside = true;
+  }
   return s;
+}
+template <class Tableau, class System, class T, class Inputs>
+TENDONLAB_INLINE auto advance_explicitly(const System& system, const StateOf<System, T>& y,
+                                         const Frame<System, T>& frame, const Inputs& in, Plain<T> h) {
+  return advance_explicitly<Tableau>(system, y, frame, in, h, [&](const StateOf<System, T>& to) TENDONLAB_ALWAYS {
+    return change(system, to, frame, in, h);
+  });
 }
 }  // namespace tendonlab::integrate

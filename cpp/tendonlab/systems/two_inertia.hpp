@@ -59,19 +59,19 @@ struct TwoInertia : SystemDefaults {
   T effort_per_command() const { return T(1.0); }
   template <class S, class Modes, class Inputs>
   Coupling<S, 4, 2> couple(const Motion<S, 2>& at, const Modes& mode, const Inputs& in) const {
-    Coupling<S, 4, 2> c;
     const S torque = actuation.apply(S(in.command(at)));
     const S gravity = gravity_torque * sin(at.position[1]), known = load.apply(in.template input<1>(at.time));
-    auto& pull = c.port[cable];
+    Sliding<S> pull;
     pull.position = lever[cable][0] * at.position[0] - at.position[1];
     pull.velocity = lever[cable][0] * at.velocity[0] - at.velocity[1];
     pull.side = mode[flank];
     const S tension = std::get<cable>(slot).respond(pull, S{}).force;  // a function of position and velocity only
-    c.port[motor] = {at.velocity[0], at.position[0], torque, mode[motor_sense], {}};
-    c.port[joint] = {at.velocity[1], at.position[1], 0.5 * (tension + gravity - known), mode[joint_sense], {}};
-    c.port[contact] = {at.velocity[1], at.position[1], tension, mode[joint_sense], {}};
-    c.applied = {torque, known - gravity};
-    return c;
+    const S load_of_joint = 0.5 * (tension + gravity - known);
+    return {{{{at.velocity[0], at.position[0], torque, mode[motor_sense], {}},
+              {at.velocity[1], at.position[1], load_of_joint, mode[joint_sense], {}},
+              {at.velocity[1], at.position[1], tension, mode[joint_sense], {}},
+              pull}},
+            {torque, known - gravity}};
   }
   template <class S, class Force, class PortAt>
   std::array<S, 3> observe(const Motion<S, 2>& at, const Force& force, const PortAt&) const {
