@@ -10,12 +10,15 @@ from functools import partial
 import numpy as np
 
 import tendonlab as tl
+from tendonlab import _core
 from benchmarks import mass
 from benchmarks.fit import SIX, Fit
 from benchmarks.peers import scipys, soda
 from tendonlab.fitting.case import Case, fine_enough, make_case
+from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
-from tendonlab.fitting.problem import pose
+from tendonlab.fitting.problem import Problem as Posed
+from tendonlab.fitting.problem import finer, pose
 from tendonlab.simulation.prepare import Replay, prepare
 from tendonlab.simulation.system import System
 
@@ -42,7 +45,7 @@ def free_run(fit: Fit, seed: int) -> Solver:
     """tendonlab in free run, as the peers simulate."""
     case = _in_free_run(fit, seed)
     problem = pose(case, white(case.noise), case.system)
-    return lambda: _six(problem.solve().system)
+    return lambda: _six(_solved(problem).system)
 
 
 def injection_first(fit: Fit, seed: int) -> Solver:
@@ -52,9 +55,15 @@ def injection_first(fit: Fit, seed: int) -> Solver:
 
     def solve() -> np.ndarray:
         first = tl.identify(data, progress=False).system
-        return _six(problem.at(first, ()).solve().system)
+        return _six(_solved(problem.at(first, ())).system)
 
     return solve
+
+
+def _solved(problem: Posed) -> Fitted:
+    """The fit as `tl.identify` ends it: fine enough where it ended."""
+    cancel = _core.Cancel()
+    return finer(problem, problem.solve(cancel=cancel), cancel)[1]
 
 
 def _in_free_run(fit: Fit, seed: int) -> Case:

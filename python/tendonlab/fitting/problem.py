@@ -14,7 +14,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab._core import Free
 from tendonlab.errors import NumericalError
-from tendonlab.fitting.case import Case
+from tendonlab.fitting.case import TOLERANCES, Case, fine_enough
 from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
 from tendonlab.fitting.noise import Floor, blocks_of, white
@@ -157,6 +157,19 @@ class Problem:
             output=outputs,
             block=blocks_of(np.asarray(ready.core.time))[samples],
         )
+
+
+def finer(problem: Problem, fit: Fitted, cancel: _core.Cancel) -> tuple[Problem, Fitted]:
+    """The problem and its `fit`, fitted on from there under finer tolerances as long as the simulator's own error is too
+    large there: what is fine enough for the start need not be for the end."""
+    for _ in TOLERANCES:
+        there = fine_enough(replace(problem.case, system=fit.system), problem.case.noise)
+        if there.tolerance >= problem.case.tolerance or cancel.is_set():
+            break
+        case = replace(problem.case, tolerance=there.tolerance, num_attempts=there.num_attempts)
+        problem = replace(problem, case=case)
+        fit = problem.at(fit.system, fit.initial).solve(cancel=cancel)
+    return problem, fit
 
 
 def initial_state(case: Case, system: System, i: int) -> tuple[float, ...]:

@@ -21,7 +21,7 @@ from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
-from tendonlab.fitting.problem import Problem, pose
+from tendonlab.fitting.problem import Problem, finer, pose
 from tendonlab.fitting.starts import cooled
 from tendonlab.identification.result import Identification
 from tendonlab.progress import track
@@ -63,7 +63,7 @@ def identify(
     kept. Each is led by fits under falling noise, and runs that it leaves in a wrong initial state start again.
     An added effect that is gone at the end of its fit starts again, larger.
     `tolerance`: relative error of a step of the simulation; default: the loosest at which the simulator's own
-    error stays below a tenth of the sensors' noise. Ctrl-C keeps the best so far, `converged` False.
+    error stays below a tenth of the sensors' noise, where the fit starts and where it ends. Ctrl-C keeps the best so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect or a
     duplicate name, NumericalError if no start can be simulated. Source: S2 sec. 4."""
     require_dataset(dataset)
@@ -82,6 +82,9 @@ def identify(
         with suppress(NumericalError):  # the larger effect may be one that cannot be simulated
             larger = _solve([_problem(case, effects, share) for share in LARGER_SHARES], progress=progress)
             fit = min(fit, larger, key=lambda f: f.cost)
+    if tolerance is None and fit.converged:
+        with suppress(NumericalError):
+            problem, fit = finer(problem, fit, _core.Cancel())
     return _result(problem, problem.return_to_prior(fit))
 
 
