@@ -10,10 +10,10 @@ from functools import partial
 import numpy as np
 
 import tendonlab as tl
-from tendonlab import _core
 from benchmarks import mass
 from benchmarks.fit import SIX, Fit
 from benchmarks.peers import scipys, soda
+from tendonlab import _core
 from tendonlab.fitting.case import Case, fine_enough, make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tendonlab import _core
 from tendonlab.errors import NumericalError
 from tendonlab.fitting import case as cases
+from tendonlab.fitting import problem as problems
 from tendonlab.fitting.case import TOLERANCES, fine_enough
 
 
@@ -92,3 +94,45 @@ def test_a_stiff_simulator_may_take_four_times_the_attempts_that_it_needs(
     ready = SimpleNamespace(measured=np.zeros((1, 100)), position_scale=1.0, velocity_scale=1.0)
     given = case(prepared=[ready], tolerance=1e-4, num_attempts=needed)
     assert cases.Case.settings(given).max_attempts == allowed
+
+
+class Ends:
+    """A problem whose simulator needs these tolerances, one after the other, where its fits end."""
+
+    def __init__(self, *needed: float) -> None:
+        self.needed, self.solves = list(needed), 0
+        self.case = SimpleNamespace(tolerance=1e-4, noise=None, num_attempts=1, system="start")
+
+    def at(self, system: str, initial: tuple[float, ...]) -> "Ends":
+        assert (system, initial) == ("end", (0.5,))
+        return self
+
+    def solve(self, *, cancel: Any) -> Any:
+        self.solves += 1
+        return SimpleNamespace(system="end", initial=(0.5,), solves=self.solves)
+
+
+@pytest.mark.parametrize(
+    ("needed", "solves", "ends"),
+    [([1e-4], 0, 1e-4), ([1e-3], 0, 1e-4), ([1e-6, 1e-6], 1, 1e-6), ([1e-5, 1e-7, 1e-7], 2, 1e-7)],
+)
+def test_a_fit_goes_on_until_it_is_fine_enough_where_it_ends(
+    needed: list[float], solves: int, ends: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = Ends(*needed)
+
+    def judged(case: Any, noise: Any) -> Any:
+        assert case.system == "end"
+        return SimpleNamespace(tolerance=problem.needed.pop(0), num_attempts=9)
+
+    def changed(of: Any, **changes: Any) -> Any:
+        if of is problem:
+            problem.case = changes["case"]
+            return problem
+        return replaced(of, **changes)
+
+    monkeypatch.setattr(problems, "replace", changed)
+    monkeypatch.setattr(problems, "fine_enough", judged)
+    start = SimpleNamespace(system="end", initial=(0.5,), solves=0)
+    finer, fit = problems.finer(problem, start, _core.Cancel())  # type: ignore[arg-type]
+    assert (fit.solves, finer.case.tolerance) == (solves, ends)  # type: ignore[attr-defined]

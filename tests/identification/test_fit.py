@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from tendonlab import _core
 from tendonlab.errors import NumericalError, ParameterError
@@ -52,6 +53,30 @@ def test_the_gradient_of_the_cost_vanishes_at_the_optimum(drive: Any) -> None:
     gradient = sum(j.T @ r for j, r in zip(found["jacobian"], found["residuals"], strict=True))
     norm = np.linalg.norm(np.vstack(found["jacobian"]), axis=0)
     assert np.all(np.abs(gradient) < 0.1 * norm)  # a tenth of a standard deviation of each parameter
+
+
+def test_a_fit_of_parameters_that_do_the_same_ends_where_least_squares_does(joint: Any) -> None:
+    """The command's scale and both others' are known to 10 %: torque, inertia, gravity and friction have one scale in
+    common, which only the priors fix."""
+    names = ("inertia", "gravity_torque", "torque_constant", "coulomb", "viscous")
+    tasks = joint.tasks(inertia=0.6, gravity_torque=1.2, coulomb=0.25, viscous=0.5)
+    free = [f for n in names for f in joint.free(n, mean=0.0, sd=0.1)]
+    found = joint.fit(tasks, free, tolerance=1e-14)
+
+    def at(x: np.ndarray) -> dict[str, Any]:
+        return joint.linearise(tasks, [f.started(f.value(v)) for f, v in zip(free, x, strict=True)])
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        return np.concatenate([*at(x)["residuals"], x / 0.1])
+
+    def jacobian(x: np.ndarray) -> np.ndarray:
+        return np.vstack([*at(x)["jacobian"], np.eye(len(x)) / 0.1])
+
+    whole = np.vstack(found["jacobian"])
+    assert np.linalg.svd(whole / np.linalg.norm(whole, axis=0), compute_uv=False)[-1] < 1e-6
+    best = least_squares(residual, np.zeros(len(names)), jacobian, xtol=1e-14, ftol=1e-14)
+    assert found["cost"] == pytest.approx(best.cost, rel=1e-6)
+    np.testing.assert_allclose(found["x"], best.x, atol=1e-3)
 
 
 def test_bounds_hold_and_are_told(joint: Any) -> None:

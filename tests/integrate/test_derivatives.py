@@ -93,6 +93,26 @@ def test_stiff_bristle_that_slides_under_a_held_command():
     assert run(system, T, command, kind="hold", velocity=[2.0], tolerance=1e-4).attempts < 1.1 * len(T)
 
 
+def test_samples_between_the_ends_of_explicit_steps():
+    """Five samples a piece of the command: their derivatives are told inside of a step."""
+    system = joint(("joint:viscous",), viscous=0.4, gravity_torque=0.5)
+    command = np.repeat(COMMAND[::5], 5)[: len(T)]
+    by = ["inertia", "viscous", "gravity_torque", "velocity0"]
+    check(system, by, command, kind="hold", velocity=[0.3], tolerance=1e-4, bound=1e-6, least=0)
+    assert run(system, T, command, kind="hold", velocity=[0.3], tolerance=1e-4).attempts < 0.5 * len(T)
+
+
+def test_events_within_explicit_steps():
+    """A held command turns and stops a pair, most of the time by one step a sample."""
+    system = pair(NOMINAL, **FRICTION)
+    check(system, list(FRICTION), kind="hold", tolerance=1e-7, bound=1e-4, least=6)
+
+
+def test_late_sensors_beside_explicit_steps():
+    system = joint(("joint:viscous", "sensor.joint_angle:delay"), viscous=0.4, sensor__joint_angle_delay=0.0032)
+    check(system, ["inertia", "viscous"], kind="hold", velocity=[0.3], tolerance=1e-4, bound=1e-6, least=0)
+
+
 def test_partial_bristle_beside_dry_friction():
     """Half of the dry friction stays dry: it sticks, with a loaded bristle beside it."""
     t = np.linspace(0.0, 1.5, 401)

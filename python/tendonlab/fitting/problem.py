@@ -160,8 +160,8 @@ class Problem:
 
 
 def finer(problem: Problem, fit: Fitted, cancel: _core.Cancel) -> tuple[Problem, Fitted]:
-    """The problem and its `fit`, fitted on from there under finer tolerances as long as the simulator's own error is too
-    large there: what is fine enough for the start need not be for the end."""
+    """The problem and its `fit`, fitted on from there under finer tolerances as long as the simulator's own error is
+    too large there: what is fine enough for the start need not be for the end."""
     for _ in TOLERANCES:
         there = fine_enough(replace(problem.case, system=fit.system), problem.case.noise)
         if there.tolerance >= problem.case.tolerance or cancel.is_set():
