@@ -84,9 +84,17 @@ def identify(
             larger = _solve([_problem(case, effects, share) for share in LARGER_SHARES], progress=progress)
             fit = min(fit, larger, key=lambda f: f.cost)
     if tolerance is None and fit.converged:
-        with suppress(NumericalError):
-            problem, fit = finer(problem, fit, _core.Cancel())
+        problem, fit = _fine_where_it_ended(problem, fit)
     return _result(problem, problem.return_to_prior(fit))
+
+
+def _fine_where_it_ended(problem: Problem, fit: Fitted) -> tuple[Problem, Fitted]:
+    try:
+        return finer(problem, fit, _core.Cancel())
+    except NumericalError:  # what runs at one tolerance need not run at another
+        return problem, fit
+    except KeyboardInterrupt:
+        return problem, replace(fit, converged=False, message="cancelled")
 
 
 def _names(what: str, given: Sequence[str]) -> tuple[str, ...]:
