@@ -59,10 +59,20 @@ def test_a_lag_that_stands_out_no_more_than_those_of_the_others_is_none(others: 
     assert any(f.blocks for f in found) == blocks
 
 
-@pytest.mark.parametrize(("nats", "other", "blocks"), [(25.0, 2.0, True), (19.0, 0.0, False), (25.0, 3.0, False)])
-def test_a_scan_that_shows_one_late_run_alone_blocks(nats: float, other: float, blocks: bool) -> None:
+@pytest.mark.parametrize(
+    ("nats", "gain", "other", "blocks"),
+    [
+        (60.0, 0.0, 2.0, True),
+        (25.0, 30.0, 2.0, True),
+        (25.0, 20.0, 2.0, False),  # its exact lag must say the same, unless the scan says enough
+        (19.0, 45.0, 0.0, False),
+        (25.0, 30.0, 3.0, False),  # another run looks late, too
+    ],
+)
+def test_a_scan_that_shows_one_late_run_alone_blocks(nats: float, gain: float, other: float, blocks: bool) -> None:
     """Though its exact lag is worth little: noise in a slow run makes it look small."""
-    lags = lags_of(("q",), np.array([[0.0, 0.02, 0.0, 0.0, 0.0]]), np.zeros(5), scanned=(0.0, nats, 0.0, other, 0.0))
+    gains, late = np.array([0.0, gain, 0.0, 0.0, 0.0]), np.array([[0.0, 0.02, 0.0, 0.0, 0.0]])
+    lags = lags_of(("q",), late, gains, scanned=(0.0, nats, 0.0, other, 0.0))
     found = [f.experiment for f in clock_findings(lags, NAMES, ["motor_torque"], STEP) if f.blocks]
     assert found == (["b"] if blocks else [])
 
@@ -73,7 +83,7 @@ def test_a_scan_tells_nothing_where_the_lags_of_the_others_scatter_as_much(
 ) -> None:
     """A stop, say, delays every motion that meets it."""
     late = np.array([[others[0], 0.04, *others[1:]]])
-    lags = lags_of(("q",), late, np.zeros(5), scanned=(0.0, 25.0, 0.0, 0.0, 0.0))
+    lags = lags_of(("q",), late, np.zeros(5), scanned=(0.0, 60.0, 0.0, 0.0, 0.0))
     assert any(f.blocks for f in clock_findings(lags, NAMES, ["motor_torque"], STEP)) == blocks
 
 

@@ -347,23 +347,25 @@ def test_candidates_that_tuning_hides_are_refitted_as_well(
 
 
 @pytest.mark.parametrize(
-    ("here", "there", "behind"),
+    ("here", "there", "behind", "poor"),
     [
-        ((500.0, 49.0), (90.0, 8.9), [False, True]),
-        ((500.0, 51.0), (90.0, 8.9), [False, False]),  # a tenth of the most promised at tuned values
-        ((500.0, 49.0), (90.0, 9.1), [False, False]),  # or at believed ones
-        ((500.0, 49.0), (90.0, None), [False, False]),  # nobody knows what it would do there
+        ((500.0, 49.0), (90.0, 8.9), [False, True], [False, True]),
+        ((500.0, 51.0), (90.0, 8.9), [False, False], [False, True]),  # a tenth of the most promised at tuned values
+        ((500.0, 49.0), (90.0, 9.1), [False, False], [False, False]),  # or at believed ones
+        ((500.0, 49.0), (90.0, None), [False, False], [False, False]),  # nobody knows what it would do there
     ],
 )
 def test_far_behind_is_a_candidate_that_promises_little_at_tuned_and_at_believed_values(
-    here: tuple[float, ...], there: tuple[float | None, ...], behind: list[bool]
+    here: tuple[float, ...], there: tuple[float | None, ...], behind: list[bool], poor: list[bool]
 ) -> None:
     chosen = [Screened(name, gain, ({},), 1.0) for name, gain in zip("ab", here, strict=True)]
     believed = [
         Screened(name, gain or 0.0, ({},), 1.0, "" if gain is not None else "stopped")
         for name, gain in zip("ab", there, strict=True)
     ]
-    assert [s.far_behind for s in contest._behind(chosen, believed)] == behind
+    found = contest._behind(chosen, believed)
+    assert [s.far_behind for s in found] == behind
+    assert [s.poor_when_believed for s in found] == poor
 
 
 def test_near_the_floor_an_effect_must_gain_more() -> None:

@@ -207,7 +207,10 @@ def test_where_settling_fails_the_fit_before_counts(fails: bool, monkeypatch: py
     assert refits.refit(fitter, base, Screened("b", 1.0, ({},), 1.0), pace=0.0) is fit
 
 
-def test_a_candidate_far_behind_others_is_not_fitted_from_nominal_values(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("promise", [{"far_behind": True}, {"poor_when_believed": True}])
+def test_a_candidate_that_promises_little_is_not_fitted_from_nominal_values(
+    promise: dict[str, bool], monkeypatch: pytest.MonkeyPatch
+) -> None:
     tried = []
 
     def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
@@ -218,5 +221,5 @@ def test_a_candidate_far_behind_others_is_not_fitted_from_nominal_values(monkeyp
     monkeypatch.setattr(refits, "strained", lambda *_: True)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    refits.refit(nothing, nothing, Screened("b", 1.0, ({},), 1.0, far_behind=True), pace=0.0)
+    refits.refit(nothing, nothing, Screened("b", 1.0, ({},), 1.0, **promise), pace=0.0)
     assert tried == [False]

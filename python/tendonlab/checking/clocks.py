@@ -15,7 +15,7 @@ LEAST = 1.5  # samples by which an experiment must lag the others
 LEAST_SHARED = 0.25  # of a sample, of a lag that all share
 RESOLVED = 0.25  # of a sample: no lag is known better
 MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
-SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others
+SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others, or they and a scan
 SCANNED, ALONE = 20.0, 0.1  # nats of a scan that make an experiment late, and share of them that no other may reach
 STANDS_OUT = 2.0  # times the nats of any experiment that is not late: what the simulator lacks suits lags in all
 MOST_LATE = 0.25  # share of the experiments of which some may lag and others lead
@@ -41,7 +41,7 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     late &= lags.gain > SUITS
     others = lags.gain[~late.any(axis=0) & np.isfinite(lags.gain)]
     late &= lags.gain > STANDS_OUT * np.max(others, initial=0.0)
-    late |= _late_alone(lags.scanned) & _far_off(away)
+    late |= _late_alone(lags.scanned) & _far_off(away) & (lags.scanned + lags.gain > SUITS)
     if late.any(axis=0).sum() > MOST_LATE * len(names) and np.any(away[late] > 0) and np.any(away[late] < 0):
         late[:] = False  # so many clocks do not go wrong both ways: it is something that the simulator lacks
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]

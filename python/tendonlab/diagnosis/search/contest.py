@@ -128,7 +128,8 @@ def _behind(chosen: Sequence[Screened], believed: Sequence[Screened]) -> list[Sc
     """The `chosen` candidates, marked where others promise far more, both here and at believed values."""
     gain = {s.effect: s.gain if s.simulated else math.inf for s in believed}
     here, there = (FAR_BEHIND * max((s.gain for s in of), default=0.0) for of in (chosen, believed))
-    return [replace(s, far_behind=s.gain < here and gain.get(s.effect, math.inf) < there) for s in chosen]
+    poor = {s.effect: gain.get(s.effect, math.inf) < there for s in chosen}
+    return [replace(s, far_behind=s.gain < here and poor[s.effect], poor_when_believed=poor[s.effect]) for s in chosen]
 
 
 def _least_gain(fitter: Fitter, base: Fitted, bar: Bar) -> float:

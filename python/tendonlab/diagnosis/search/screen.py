@@ -28,8 +28,8 @@ INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to
 class Screened:
     """A candidate as the screen saw it: expected gain in nats, starting values for its fits, best first, and the gain
     that an effect of typical size would bring (its visibility). `trouble`: why the model never ran with it, empty where
-    it did; `far_behind`: whether others promise far more, at tuned values and at believed ones: then one start is
-    enough."""
+    it did; `poor_when_believed`: whether others promise far more at believed values: no fit starts from there then;
+    `far_behind`: at tuned values, too: then one start is enough."""
 
     effect: str
     gain: float
@@ -37,6 +37,7 @@ class Screened:
     visibility: float
     trouble: str = ""
     far_behind: bool = False
+    poor_when_believed: bool = False
 
     @property
     def simulated(self) -> bool:
