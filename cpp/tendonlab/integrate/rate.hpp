@@ -43,17 +43,22 @@ struct State {
 };
 template <class System, class T>
 using StateOf = State<T, System::dof, memories<System>>;
+/// A state of which `f` gives each number.
+template <class To, class S, int dof, int nz, class F>
+TENDONLAB_INLINE State<To, dof, nz> number_by_number(const State<S, dof, nz>& y, F&& f) {
+  State<To, dof, nz> out;
+  for (std::size_t j = 0; j < dof; ++j) {
+    out.at.position[j] = f(y.at.position[j]);
+    out.at.velocity[j] = f(y.at.velocity[j]);
+  }
+  out.at.time = f(y.at.time);
+  for (std::size_t i = 0; i < nz; ++i) out.memory[i] = f(y.memory[i]);
+  return out;
+}
 /// A state without its derivatives.
 template <class S, int dof, int nz>
 State<double, dof, nz> values(const State<S, dof, nz>& y) {
-  State<double, dof, nz> out;
-  for (std::size_t j = 0; j < dof; ++j) {
-    out.at.position[j] = plain(y.at.position[j]);
-    out.at.velocity[j] = plain(y.at.velocity[j]);
-  }
-  out.at.time = plain(y.at.time);
-  for (std::size_t i = 0; i < nz; ++i) out.memory[i] = plain(y.memory[i]);
-  return out;
+  return number_by_number<double>(y, [](const S& x) { return plain(x); });
 }
 template <int dof, int nz>
 const State<double, dof, nz>& values(const State<double, dof, nz>& y) {
@@ -70,14 +75,7 @@ TENDONLAB_INLINE decltype(auto) plainly(const State<S, dof, nz>& y) {
 /// A state with derivatives of 0.
 template <class T, int dof, int nz>
 TENDONLAB_INLINE State<T, dof, nz> lifted(const State<double, dof, nz>& y) {
-  State<T, dof, nz> out;
-  for (std::size_t j = 0; j < dof; ++j) {
-    out.at.position[j] = T(y.at.position[j]);
-    out.at.velocity[j] = T(y.at.velocity[j]);
-  }
-  out.at.time = T(y.at.time);
-  for (std::size_t i = 0; i < nz; ++i) out.memory[i] = T(y.memory[i]);
-  return out;
+  return number_by_number<T>(y, [](double x) { return T(x); });
 }
 template <class S, int dof, int nz>
 struct Rate {
