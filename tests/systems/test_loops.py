@@ -199,6 +199,19 @@ def test_injection_pulls_the_model_to_the_record():
     assert done["joint_angle"] - 0.02 == pytest.approx(other, abs=1e-7)
 
 
+def test_an_injection_ends_where_a_late_sensor_would_show_what_was_not_logged():
+    """A rig replayed with its own parameters moves as it did, to its last sample: its sensor is 30 ms late, and nobody
+    knows what it would have shown after the end."""
+    late = {"viscous": 0.3, "sensor__joint_angle_delay": 0.03}
+    system = joint(("joint:viscous", "sensor.joint_angle:delay"), **late)
+    force = np.sin(3.0 * T)
+    recorded = run(system, T, force, velocity=[0.5])
+    log = smooth(T, recorded["joint_angle"] + 1e-5 * np.random.default_rng(0).standard_normal(len(T)))
+    pulled = controller(log, kind="injection", proportional=200.0, derivative=20.0)
+    error = np.abs(run(system, T, force, loop=pulled, velocity=[0.5])["joint_velocity"] - recorded["joint_velocity"])
+    assert np.max(error[-6:]) < 3.0 * np.max(error[100:-6])
+
+
 def test_motor_loop_of_a_pair_with_friction_holds_its_reference():
     """PD on the motor of a rig that sticks: it comes to rest within what friction allows."""
     t = np.linspace(0.0, 3.0, 301)

@@ -34,8 +34,11 @@ class Drive : public Readings<T> {
     if (samples()) next = std::min(next, tick_time(tick));
     for (const auto& c : pending) next = std::min(next, c.due);
     if (!echoes.empty()) next = std::min(next, echoes.front());
+    if (ends_early() && now < end_of_injection()) next = std::min(next, end_of_injection());
     return next > now ? next : std::nextafter(now, Signal::inf_time);
   }
+  /// A number whose derivatives are those of the instant `now`, at which an input jumps.
+  T moves_at(double now) const { return ends_early() && now == end_of_injection() ? T(-sensor_late) : this->late; }
   /// The next instant after `now` at which a smooth input may turn: its next knot.
   double next_knot(double now) const {
     double next = Signal::inf_time;
@@ -59,6 +62,7 @@ class Drive : public Readings<T> {
     if (logged()) move(from.inputs[0], piece[0], shift, now);
     move(from.loop.disturbance, disturbance_piece, shift, now);
     move(from.loop.reference, reference_piece, shift, now);
+    if (ends_early() && now >= end_of_injection()) this->pull = 0;
     while (!pending.empty() && pending.front().due <= now) {
       held = pending.front().value;
       pending.pop();
@@ -119,6 +123,9 @@ class Drive : public Readings<T> {
     double due;
     T value;
   };
+  /// A late sensor shows the last motion after the end of the log, which then pulls no more.
+  bool ends_early() const { return from.loop.kind == Loop::Kind::injection && plain(sensor_late) > 0; }
+  double end_of_injection() const { return from.time.back() - plain(sensor_late); }
   /// Does the logged command drive the system, rather than a controller?
   bool logged() const { return from.loop.kind != Loop::Kind::controller; }
   static void move(const Signal& s, int& i, double by, double now) {

@@ -9,7 +9,7 @@ class LaneReadings : public Readings<Lanes> {
   explicit LaneReadings(const Experiment& of) : Readings<Lanes>(of, 0.0, 0.0, 0.0) {}
   /// Every lane reads as `one` does now.
   void follow(const Readings<double>& one) {
-    late = one.late, sensor_late = one.sensor_late, bias = one.bias, held = one.held, side = one.side;
+    late = one.late, sensor_late = one.sensor_late, bias = one.bias, held = one.held, side = one.side, pull = one.pull;
     for (std::size_t k = 0; k < from.inputs.size(); ++k)
       if (from.inputs[k].holds) piece[k].fill(one.piece[k]);
     if (from.loop.reference.holds) reference_piece.fill(one.reference_piece);
@@ -27,7 +27,7 @@ class LaneReadings : public Readings<Lanes> {
     };
     using R = Readings<double>;
     late = numbers(&R::late), sensor_late = numbers(&R::sensor_late), bias = numbers(&R::bias);
-    held = numbers(&R::held), side = numbers(&R::side);
+    held = numbers(&R::held), side = numbers(&R::side), pull = numbers(&R::pull);
     for (std::size_t k = 0; k < from.inputs.size(); ++k)
       if (from.inputs[k].holds) piece[k] = pieces([&](const R& of) { return of.piece[k]; });
     if (from.loop.reference.holds) reference_piece = pieces([](const R& of) { return of.reference_piece; });

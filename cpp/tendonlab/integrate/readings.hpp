@@ -35,8 +35,9 @@ class Readings {
     // The sensor's model is inverted on the logged signal: its delay needs no past of the simulation.
     const S then = now + lift<S>(sensor_late);
     const auto axis = static_cast<std::size_t>(loop.axis);
-    return u + loop.proportional * (loop.reference.value(then, reference_piece) - lift<S>(bias) - position[axis]) +
-           loop.derivative * (loop.reference.slope(then, reference_piece) - velocity[axis]);
+    const S away = loop.reference.value(then, reference_piece) - lift<S>(bias) - position[axis];
+    const S parting = loop.reference.slope(then, reference_piece) - velocity[axis];
+    return u + lift<S>(pull) * (loop.proportional * away + loop.derivative * parting);
   }
   template <class S, int n>
   S command(const Motion<S, n>& at) const {
@@ -80,6 +81,7 @@ class Readings {
   T late, sensor_late, bias;
   bool remembers;     ///< does the loop read the past?
   Plain<T> side = 0;  ///< mode of the saturation: -1, 0, +1
+  Plain<T> pull = 1;  ///< share of the injection: none where what a late sensor shows there was never logged
   Past<T> past;
 
  protected:

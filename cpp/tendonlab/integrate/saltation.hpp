@@ -12,12 +12,12 @@ class Jump {
   /// Before the modes change: how the instant of the event moves with the parameters. mode -1: a jump of the inputs;
   /// `toward`: the side on which a gap is left.
   template <class Simulation>
-  Jump(const Simulation& s, int mode, double toward) : happens(mode >= 0 || varies(s.drive.late)) {
+  Jump(const Simulation& s, int mode, double toward) : happens(mode >= 0 || varies(s.drive.moves_at(s.t))) {
     if constexpr (!std::is_same_v<T, double>) {
       if (!happens) return;
       before = s.plain_rate();
       if (mode < 0)
-        moves = s.drive.late;  // the delay of the command is a parameter, which moves the jump
+        moves = s.drive.moves_at(s.t);  // delays are parameters, which move the jump
       else
         moves = of_guard(s, mode, toward);
     } else {
