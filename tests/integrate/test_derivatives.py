@@ -103,9 +103,11 @@ def test_samples_between_the_ends_of_explicit_steps():
 
 
 def test_events_within_explicit_steps():
-    """A held command turns and stops a pair, most of the time by one step a sample."""
-    system = pair(NOMINAL, **FRICTION)
-    check(system, list(FRICTION), kind="hold", tolerance=1e-7, bound=1e-4, least=6)
+    """A held command turns and stops a pair: one step a sample, and one more an event."""
+    system, time = pair(NOMINAL, **FRICTION), np.linspace(0.0, 0.5, 1001)
+    command = 0.06 * np.sin(4 * np.pi * time) + 0.03 * np.sin(9.2 * np.pi * time + 1.0)
+    check(system, list(FRICTION), command, kind="hold", time=time, tolerance=1e-4, bound=1e-6, least=3)
+    assert run(system, time, command, kind="hold", tolerance=1e-4).attempts < 1.02 * len(time)
 
 
 def test_late_sensors_beside_explicit_steps():

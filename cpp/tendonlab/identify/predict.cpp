@@ -139,6 +139,7 @@ void Prediction::differentiate(const integrate::Trajectory& run, const Configura
     task.whitening->filter(Eigen::Map<const RowMatrix>(from, run.channels, run.samples), into, factor);
   };
   Eigen::Index seed = 0;
+  if (moving.size() < problem.free.size()) out.columns.leftCols(num_free()).setZero();  // what a condition fixes
   for (const std::size_t k : moving) {
     const Free& free = problem.free[k];
     const auto c = static_cast<Eigen::Index>(k);
@@ -149,6 +150,7 @@ void Prediction::differentiate(const integrate::Trajectory& run, const Configura
   Eigen::VectorXd part(task.scatter.empty() ? 0 : out.columns.rows());
   for (const Scatter& group : task.scatter) {
     auto by_factor = out.columns.col(own++);
+    by_factor.setZero();
     for (const std::size_t p : group.parameters) {
       filtered(column(p), group.sd * with.values[p], part);
       by_factor += part;
@@ -164,7 +166,7 @@ Linearised Prediction::at(const Eigen::VectorXd& x, const Eigen::VectorXd& z, bo
   Linearised out;
   out.num_free = with_derivatives ? num_free() : 0;
   const Eigen::Index rows = task.whitening->rows(), all = with_derivatives ? num_free() + num_initial() + 1 : 1;
-  out.columns.setZero(rows, all);
+  out.columns.resize(rows, all);
   out.columns.rightCols<1>() =
       task.whitening->residual(Eigen::Map<const RowMatrix>(run.value.data(), run.channels, run.samples));
   bool finite = true;

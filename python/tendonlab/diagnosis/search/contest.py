@@ -125,7 +125,7 @@ def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar,
 
 
 def _behind(chosen: Sequence[Screened], believed: Sequence[Screened]) -> list[Screened]:
-    """The `chosen` candidates, marked where others promise far more, both here and at believed values."""
+    """The `chosen` candidates, marked where others promise far more at believed values, and where they also do here."""
     gain = {s.effect: s.gain if s.simulated else math.inf for s in believed}
     here, there = (FAR_BEHIND * max((s.gain for s in of), default=0.0) for of in (chosen, believed))
     poor = {s.effect: gain.get(s.effect, math.inf) < there for s in chosen}

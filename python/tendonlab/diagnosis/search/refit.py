@@ -47,7 +47,7 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
     starts = candidate.starts[:1] if candidate.far_behind else candidate.starts
     for values in starts if candidate.simulated else ():
         attempt(values)
-    hidden = strained(fitter, base) and not candidate.far_behind and not candidate.poor_when_believed
+    hidden = strained(fitter, base) and not candidate.poor_when_believed
     if best is None or (hidden and best.mean_square > NEAR_FLOOR):
         attempt(candidate.starts[0], from_nominal=True)
     if best is None:

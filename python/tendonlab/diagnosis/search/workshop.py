@@ -75,7 +75,7 @@ class Workshop:
             pace = max(pace, first.fitted.counted().evidence)
         rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
         far = FAR_BEHIND * (pace - base.counted().evidence)
-        rest = [replace(s, far_behind=s.far_behind and s.gain < far) for s in rest]
+        rest = [_promising_after_all(s) if s.far_behind and s.gain >= far else s for s in rest]
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
         shown = track(work, label=f"refit {label}", total=len(rest), unit="effect", shown=self.progress, stays=False)
         tried = [*([first] if first else []), *shown]
@@ -100,6 +100,11 @@ class Workshop:
                 break
             trials = counted_alike([better.get(t.effect, t) for t in trials], base)
         return trials
+
+
+def _promising_after_all(candidate: Screened) -> Screened:
+    """Where the first candidate kept too little of its promise, no screen says who is far behind."""
+    return replace(candidate, far_behind=False, poor_when_believed=False)
 
 
 def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Trial | Failed:

@@ -1,0 +1,30 @@
+"""What the first refit tells of the promises of the others."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tendonlab.diagnosis.search import workshop
+from tendonlab.diagnosis.search.screen import Screened
+
+
+@pytest.mark.parametrize(("least", "behind"), [(100.0, False), (1000.0, True)])
+def test_nobody_is_far_behind_a_promise_that_was_not_kept(
+    least: float, behind: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first candidate fails: a tenth of the `least` gain that is asked for is then enough for all starts."""
+    seen = {}
+
+    def tried(_fitter: Any, _base: Any, candidate: Screened, *, pace: float) -> workshop.Failed:
+        seen[candidate.effect] = candidate
+        return workshop.Failed(candidate.effect, "stopped")
+
+    monkeypatch.setattr(workshop, "_tried", tried)
+    pool: Any = SimpleNamespace(map=map)
+    shop = workshop.Workshop(pool, cancel=None, progress=False, library=None)  # type: ignore[arg-type]
+    base: Any = SimpleNamespace(counted=lambda: SimpleNamespace(evidence=0.0))
+    marks = {"far_behind": True, "poor_when_believed": True}
+    chosen = [Screened("first", 500.0, ({},), 1.0), Screened("other", 20.0, ({},), 1.0, **marks)]
+    shop.refit_all(base, base, chosen, "effect", least=least)
+    assert (seen["other"].far_behind, seen["other"].poor_when_believed) == (behind, behind)
