@@ -91,6 +91,13 @@ def test_a_command_at_its_limit_is_noted_on_either_side(side: float, tmp_path: P
     assert f"stays at {value} A for {100 * np.mean(CURRENT >= 0.8):.0f} %" in note.detail
 
 
+def test_both_limits_of_a_command_are_one_note(tmp_path: Path) -> None:
+    (note,) = found(tmp_path, (TIME, ANGLE, np.clip(CURRENT, -0.8, 0.8)))
+    assert note.count == int(np.sum(np.abs(CURRENT) >= 0.8))
+    assert "at 0.8 A for" in note.detail
+    assert "and at −0.8 A for" in note.detail
+
+
 def test_a_short_touch_of_the_extreme_and_a_command_of_few_levels_are_no_limit(tmp_path: Path) -> None:
     touch = CURRENT.copy()
     touch[np.argsort(touch)[-4:]] = 2.0

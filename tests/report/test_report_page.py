@@ -261,6 +261,14 @@ def test_problems_of_the_logs_are_shown_only_where_there_are_some(undrawn: Diagn
     assert loud.to_dict()["data"] == [{**lag, "blocks": True}]
 
 
+def test_a_problem_of_several_experiments_is_told_once(undrawn: Diagnosis, tmp_path: Path) -> None:
+    limit = {"problem": "saturation", "signal": "motor_torque", "blocks": False, "detail": "stays at 3 N·m"}
+    noted = tuple({**limit, "experiment": f"swing-{i}"} for i in (1, 2, 5))
+    words = " ".join(read(replace(undrawn, data=noted), tmp_path)[1].text)
+    assert words.count("stays at 3 N·m") == 1
+    assert "(signal motor_torque; experiment swing-1; alike in swing-2, swing-5)" in words
+
+
 def test_gains_of_the_replay_carry_their_units(undrawn: Diagnosis, tmp_path: Path) -> None:
     replay = {"kind": "injection", "kp": 0.8, "kd": 0.01, "kp_unit": "N*m/rad", "kd_unit": "N*m*s/rad"}
     words = " ".join(read(replace(undrawn, replay=replay), tmp_path)[1].text)

@@ -217,3 +217,10 @@ def test_a_narrow_span_takes_the_digits_that_tell_its_ends_apart() -> None:
     assert numbers.span((0.5, 0.5)) == "0.5 to 0.5"
     assert numbers.span((1.0, 1.0 + 1e-9)) == "1 to 1"  # beyond six digits nothing is claimed
     assert numbers.span((float("nan"), 1.0)) == "– to 1"
+
+
+def test_a_value_has_the_digits_of_its_interval() -> None:
+    assert numbers.estimate(14.013, (14.01, 14.02)) == ("14.01", "14.01 to 14.02")
+    assert numbers.estimate(0.1234, (0.11, 0.13)) == ("0.123", "0.11 to 0.13")
+    assert numbers.estimate(0.1234, None) == ("0.123", "")
+    assert numbers.estimate(None, (None, 1.0), 2) == ("–", "")

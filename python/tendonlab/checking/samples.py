@@ -10,7 +10,7 @@ from tendonlab.checking.finding import Finding
 from tendonlab.checking.smoothing import repeats, smallest_change
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
-from tendonlab.report.numbers import number
+from tendonlab.report.numbers import number, unit_text
 from tendonlab.simulation.signals import white_noise_sd
 
 GAP = 1.5  # median steps between two stamps that make a gap
@@ -97,12 +97,13 @@ def _limits(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
         values = values[np.isfinite(values)]
         if len(np.unique(values)) < len(values) // 10:
             continue  # a command of few levels
-        for edge in (values.max(), values.min()):
-            at = values == edge
-            if at.mean() > PLATEAU and _longest(at) >= LEAST_RUN:
-                value = f"{number(float(edge))} {dataset.signals[name].si_unit}"
-                text = f"{name} stays at {value} for {100 * at.mean():.0f} % of the samples, as at a limit"
-                yield _note("saturation", text, experiment, name, int(at.sum()))
+        stays = {float(edge): values == edge for edge in (values.max(), values.min())}
+        stays = {edge: at for edge, at in stays.items() if at.mean() > PLATEAU and _longest(at) >= LEAST_RUN}
+        if stays:
+            unit = unit_text(dataset.signals[name].si_unit)
+            shares = (f"at {number(e)} {unit} for {100 * at.mean():.0f} % of the samples" for e, at in stays.items())
+            text = f"{name} stays {' and '.join(shares)}, as at a limit"
+            yield _note("saturation", text, experiment, name, sum(int(at.sum()) for at in stays.values()))
 
 
 def _steps(dataset: Dataset) -> Iterator[Finding]:
@@ -116,7 +117,8 @@ def _steps(dataset: Dataset) -> Iterator[Finding]:
         step = float(np.median([smallest_change(r) for r in records]))
         travel = max(float(np.ptp(r)) for r in records)
         if step > max(COARSE * float(np.median([white_noise_sd(r) for r in records])), travel / FINE):
-            text = f"{name} changes in steps of {number(step)} {spec.si_unit}; state this as its `resolution`"
+            size = f"{number(step)} {unit_text(spec.si_unit)}".rstrip()
+            text = f"{name} changes in steps of {size}; state this as its `resolution`"
             yield Finding(problem="quantisation", signal=name, detail=text)
 
 

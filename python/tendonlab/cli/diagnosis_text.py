@@ -5,7 +5,7 @@ from __future__ import annotations
 from tendonlab.cli.text import bullets, table, wrapped
 from tendonlab.report.blocks import Block, Candidates, Cell, Points, Table, Text
 from tendonlab.report.diagnosis import Diagnosis, EffectFinding
-from tendonlab.report.numbers import number, prefixed, probability, span
+from tendonlab.report.numbers import estimate, prefixed, probability
 from tendonlab.report.outline import SECTIONS, Section
 from tendonlab.report.words import capital, parameter_words
 
@@ -77,8 +77,8 @@ def _parameters(effect: EffectFinding) -> list[str]:
         bounds = entry.get("ci95")
         shown = [entry["value"], *(bounds or [])]
         factor, unit = prefixed(shown, str(entry.get("unit", "")))
-        between = span([factor * b for b in bounds]) if bounds and None not in bounds else ""
+        value, *ends = (None if one is None else factor * one for one in shown)
+        told, between = estimate(value, ends)
         interval = f" (95 %: {between})" if between else ""
-        value = None if entry["value"] is None else factor * entry["value"]
-        lines.append(f"{parameter_words(name, element=effect.element)} = {number(value)} {unit}".rstrip() + interval)
+        lines.append(f"{parameter_words(name, element=effect.element)} = {told} {unit}".rstrip() + interval)
     return lines

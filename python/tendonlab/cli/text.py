@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tendonlab.diagnosis.confusions import confusions
-from tendonlab.report.numbers import number, prefixed, span, unit_text
+from tendonlab.report.numbers import estimate, number, prefixed, unit_text
 from tendonlab.report.words import listing
 from tendonlab.simulation.catalog import parameter_unit, unit
 
@@ -93,7 +93,7 @@ def identification_text(fit: Identification) -> str:
         factor, unit = prefixed(shown, str(row["unit"]))
         nominal, value, lower, upper = (factor * each for each in shown)
         doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "not constrained by these data: held"
-        rows.append([str(name), number(nominal), number(value), span([lower, upper]), unit, doubt])
+        rows.append([str(name), number(nominal), *estimate(value, [lower, upper]), unit, doubt])
     num = len(fit.residuals)
     fitted = f"{num} experiments fitted together" if num > 1 else "1 experiment fitted"
     state = f"Converged after {fit.num_iterations} iterations" if fit.converged else f"Not converged: {fit.message}"

@@ -30,9 +30,24 @@ def span(bounds: Sequence[float] | None, digits: int = 3) -> str:
     """Two bounds as "0.04 to 0.06"; empty where they are absent. Different bounds differ in print, by more digits."""
     if bounds is None:
         return ""
-    low, high = (number(bound, digits) for bound in bounds)
-    alike = low == high and bounds[0] != bounds[1] and digits < MOST_DIGITS
-    return span(bounds, digits + 1) if alike else f"{low} to {high}"
+    low, high = (number(bound, _telling(bounds, digits)) for bound in bounds)
+    return f"{low} to {high}"
+
+
+def estimate(value: float | None, bounds: Sequence[float | None] | None, digits: int = 3) -> tuple[str, str]:
+    """A value and the span of its bounds (empty where one is absent), with the digits that tell the bounds apart."""
+    known = [bound for bound in bounds or () if bound is not None]
+    if len(known) != 2:
+        return number(value, digits), ""
+    return number(value, _telling(known, digits)), span(known, digits)
+
+
+def _telling(bounds: Sequence[float], digits: int) -> int:
+    """The digits, `digits` or more, that tell two different bounds apart."""
+    if bounds[0] == bounds[1]:
+        return digits
+    apart = (d for d in range(digits, MOST_DIGITS) if number(bounds[0], d) != number(bounds[1], d))
+    return next(apart, max(digits, MOST_DIGITS))
 
 
 def probability(value: float | None) -> str:

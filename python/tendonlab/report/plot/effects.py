@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tendonlab.report.numbers import number, probability, span, unit_text
+from tendonlab.report.numbers import estimate, probability, unit_text
 from tendonlab.report.plot.style import COLOURS, INK, MUTED, new_axes, tidy, wrapped
 from tendonlab.report.words import capital, parameter_words, phrase
 
@@ -69,8 +69,9 @@ def height(diagnosis: Diagnosis, *, count: int = 6) -> float:
 def _parameters(finding: EffectFinding) -> str:
     texts = []
     for name, found in list(finding.parameters.items())[:_LINES]:
-        interval = f" ({span(found['ci95'], 2)})" if found.get("ci95") is not None else ""
+        told, between = estimate(found["value"], found.get("ci95"), 2)
+        interval = f" ({between})" if between else ""
         title = parameter_words(name, element=finding.element)
-        texts.append(f"{title} {number(found['value'], 2)}{interval} {unit_text(found.get('unit', ''))}".rstrip())
+        texts.append(f"{title} {told}{interval} {unit_text(found.get('unit', ''))}".rstrip())
     further = len(finding.parameters) - len(texts)
     return "\n".join(texts) + (f"; {further} more" if further > 0 else "")

@@ -104,11 +104,11 @@ def _parameter_row(name: str, entry: Mapping[str, Any]) -> list[Cell]:
     shown = [entry["value"], entry.get("nominal"), *bounds]
     factor, unit = numbers.prefixed(shown, str(entry.get("unit") or ""))
     value, nominal, *ends = (None if number is None else factor * number for number in shown)
-    interval = "" if None in ends or not ends else numbers.span([end for end in ends if end is not None], 4)
+    told, interval = numbers.estimate(value, ends, 4)
     if not entry.get("informed", True):
         interval = "not constrained by these data"
     title = Cell(capital(words(str(name))), soft=f"({unit})" if unit else "")
-    return [title, Cell(numbers.number(nominal, 4)), Cell(numbers.number(value, 4)), Cell(interval)]
+    return [title, Cell(numbers.number(nominal, 4)), Cell(told), Cell(interval)]
 
 
 def _plainly(value: Any) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from tendonlab.report.blocks import Block, Points, Text
@@ -11,8 +11,9 @@ from tendonlab.report.words import capital, words
 
 
 def problems(diagnosis: Diagnosis) -> list[Block]:
-    """Problems of the logs, worst first."""
-    return [Points(items=[(_problem(entry), _place(entry)) for entry in diagnosis.data], style="boxed", brief=True)]
+    """Problems of the logs, worst first; one that many experiments share is told once."""
+    items = [(_problem(alike[0]), _place(alike)) for alike in _grouped(diagnosis.data)]
+    return [Points(items=items, style="boxed", brief=True)]
 
 
 def warnings(diagnosis: Diagnosis) -> list[Block]:
@@ -22,16 +23,26 @@ def warnings(diagnosis: Diagnosis) -> list[Block]:
     return [Points(items=[(capital(warning), "") for warning in diagnosis.warnings], style="boxed", brief=True)]
 
 
+def _grouped(entries: Sequence[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
+    """The entries with the same problem of the same signal, in the order of their first."""
+    groups: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
+    for entry in entries:
+        alone = entry["detail"] if entry["blocks"] else None
+        groups.setdefault((entry["problem"], entry["signal"], alone), []).append(entry)
+    return list(groups.values())
+
+
 def _problem(entry: Mapping[str, Any]) -> str:
     return f"{capital(words(str(entry['problem'])))}: {entry['detail']}"
 
 
-def _place(entry: Mapping[str, Any]) -> str:
-    """Which signal and experiment, and whether the diagnosis had to stop."""
-    signal, experiment = entry.get("signal"), entry.get("experiment")
+def _place(alike: Sequence[Mapping[str, Any]]) -> str:
+    """Which signal and experiments, and whether the diagnosis had to stop."""
+    signal, (experiment, *others) = alike[0]["signal"], (entry["experiment"] for entry in alike)
     parts = [
         f"signal {signal}" if signal else "",
         f"experiment {experiment}" if experiment else "",
-        "must be corrected before a diagnosis" if entry.get("blocks") else "",
+        f"alike in {', '.join(others)}" if all(others) and others else "",
+        "must be corrected before a diagnosis" if alike[0]["blocks"] else "",
     ]
     return "; ".join(part for part in parts if part)
