@@ -53,7 +53,8 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
         return gains[motion.words]
 
     path = 1.0 + np.arange(0.0, DURATION, 1 / RATE)
-    made = [SimpleNamespace(words=name, path=path) for name in gains]
+    loads: dict[str, Any] = {"payload": 2.0, "payload_of": lambda _: {"gravity_torque": 2.0}}
+    made = [SimpleNamespace(words=n, path=path, **(loads if n == "e" else {"payload": 0.0})) for n in gains]
     monkeypatch.setattr(next_experiments, "motions", lambda *_: made)
     monkeypatch.setattr(next_experiments, "_separation", separation)
     floor: Any = None
@@ -61,6 +62,7 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     found = advise(case(), floor, first, second)  # type: ignore[arg-type]
     assert [(row["description"], row["expected_gain"]) for row in found] == [("e", 900.0), ("c", 40.0), ("a", 12.3)]
     assert found[0]["separates"] == ["x", "y"]
+    assert [row.get("add") for row in found] == [{"gravity_torque": 2.0}, None, None]
     reference = found[0]["reference"]
     assert list(reference.columns) == ["t", "angle (deg)"]
     assert reference["angle (deg)"].iloc[0] == pytest.approx(np.degrees(1.0))  # as the logs measure it
@@ -134,8 +136,7 @@ def test_a_model_follows_a_motion_from_rest(payload: float) -> None:
     time = np.arange(0.0, DURATION, 1 / RATE)
     path = 0.3 + 0.2 * np.sin(2.0 * time + 1.0)
     system = joint(("joint:viscous",), viscous=0.5, inertia=0.5)
-    heavier = {"inertia": 0.5 + payload}
-    motion: Any = SimpleNamespace(path=path, payload=payload, payload_on=lambda _: heavier)
+    motion: Any = SimpleNamespace(path=path, payload=payload, payload_of=lambda _: {"inertia": payload})
     names = [s.name for s in system.info.outputs]
     of: Any = SimpleNamespace(system=system)
     rig: Any = SimpleNamespace(outputs=names, settings=lambda: _core.Settings(tolerance=1e-9))

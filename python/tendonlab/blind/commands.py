@@ -1,4 +1,4 @@
-"""`tendonlab blind draw|run|score|calibrate`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|follow|score|calibrate`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
@@ -24,13 +24,43 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|score|calibrate")
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|calibrate")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
     drawing.add_argument(
         "--sealed", type=Path, help="new folder of the truth, outside OUT (default OUT/sealed: move it before `run`)"
     )
+    _add_drawn(drawing)
+    drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
+
+    text = "draw the cases again whose report ends in a tie, each with one more experiment"
+    following = _verb(verbs, "follow", _follow, text)
+    following.add_argument("reports", type=Path, metavar="REPORTS", help="what `run` wrote of these cases")
+    following.add_argument("out", type=Path, metavar="OUT")
+    following.add_argument("--sealed", type=Path, required=True, help="new folder of the truth, outside OUT")
+    text = "the motion that the report puts first (default), or a random one of the same length"
+    following.add_argument("--choice", choices=("advised", "random"), default="advised", help=text)
+    _add_drawn(following)
+
+    text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
+    running = _verb(verbs, "run", _run, text)
+    running.add_argument("cases", type=Path, metavar="CASES")
+    running.add_argument("--out", type=Path, required=True, help="folder of the reports and verdicts.json")
+    text = "time limit of one diagnosis; a case that exceeds the limit counts as failed (default 1800)"
+    running.add_argument("--timeout", type=float, default=1800.0, metavar="SECONDS", help=text)
+    running.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
+
+    scoring = _verb(verbs, "score", _score, "open the truth and compare")
+    scoring.add_argument("sealed", type=Path, metavar="SEALED")
+    scoring.add_argument("reports", type=Path, metavar="REPORTS")
+    scoring.add_argument("--csv", type=Path, help="write one row per case here")
+    scoring.add_argument("--json", type=Path, help="write summary and cases here")
+    _add_calibrate(verbs)
+
+
+def _add_drawn(drawing: argparse.ArgumentParser) -> None:
+    """What is drawn: the options that `draw` and `follow` share."""
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
     text = "kind of rig, or mixed for all that the protocol draws (default two_inertia)"
@@ -48,22 +78,6 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     drawing.add_argument("--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=ends, help=text)
     text = "the same of the second effect of a pair (default: as --strengths)"
     drawing.add_argument("--second", type=float, nargs=2, metavar=ends, help=text)
-    drawing.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
-
-    text = "diagnose every case, resuming where interrupted, and hash the reports; refused while a truth lies near them"
-    running = _verb(verbs, "run", _run, text)
-    running.add_argument("cases", type=Path, metavar="CASES")
-    running.add_argument("--out", type=Path, required=True, help="folder of the reports and verdicts.json")
-    text = "time limit of one diagnosis; a case that exceeds the limit counts as failed (default 1800)"
-    running.add_argument("--timeout", type=float, default=1800.0, metavar="SECONDS", help=text)
-    running.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
-
-    scoring = _verb(verbs, "score", _score, "open the truth and compare")
-    scoring.add_argument("sealed", type=Path, metavar="SEALED")
-    scoring.add_argument("reports", type=Path, metavar="REPORTS")
-    scoring.add_argument("--csv", type=Path, help="write one row per case here")
-    scoring.add_argument("--json", type=Path, help="write summary and cases here")
-    _add_calibrate(verbs)
 
 
 def _add_calibrate(verbs: Any) -> None:
@@ -94,11 +108,22 @@ def _verb(verbs: Any, name: str, call: Callable[[argparse.Namespace], int], text
 def _draw(given: argparse.Namespace) -> int:
     from .drawing import draw  # loads numpy and scipy, which `tendonlab --help` does not need
 
-    names = ("sealed", "system", "repeats", "unknown_share", "pairs", "faults", "jobs")
-    options = {name: getattr(given, name) for name in names}
-    second = tuple(given.second) if given.second else None
-    print(draw(given.seed, given.count, given.out, strengths=tuple(given.strengths), second=second, **options))
+    print(draw(given.seed, given.count, given.out, sealed=given.sealed, jobs=given.jobs, **_drawn(given)))
     return 0
+
+
+def _follow(given: argparse.Namespace) -> int:
+    from .following import follow
+
+    where = {"sealed": given.sealed, "choice": given.choice}
+    print(follow(given.seed, given.count, given.reports, given.out, **where, **_drawn(given)))
+    return 0
+
+
+def _drawn(given: argparse.Namespace) -> dict[str, Any]:
+    names = ("system", "repeats", "unknown_share", "pairs", "faults")
+    ranges = {"strengths": tuple(given.strengths), "second": tuple(given.second) if given.second else None}
+    return {name: getattr(given, name) for name in names} | ranges
 
 
 def _run(given: argparse.Namespace) -> int:
@@ -121,7 +146,7 @@ def _score(given: argparse.Namespace) -> int:
 
 
 def main() -> int:
-    """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|score."""
+    """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|follow|score|calibrate."""
     text = "check the diagnosis on synthetic rigs whose truth is sealed"
     parser = argparse.ArgumentParser(prog="python -m tendonlab.blind", description=text)
     _add_verbs(parser)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -22,6 +23,22 @@ from .write import record, sealed_toml, write_dataset
 
 BATCH = 20  # cases simulated together
 MAX_TRIES = 3  # of one effect, before another takes its place
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A drawn case, except for its logs: its place in the series, the rig with every amplitude set, the strengths of
+    its effects, and the effects that were out of its reach.
+    """
+
+    index: int
+    rig: Rig
+    strengths: list[Strength]
+    redrawn: list[str]
+
+    @property
+    def name(self) -> str:
+        return f"case-{self.index + 1:03d}"
 
 
 def draw(
@@ -68,7 +85,7 @@ def draw(
         second=second,
     )
     wanted = list(enumerate(planned))
-    _make_folders(cases, sealed)
+    make_folders(cases, sealed)
     batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
     work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
     with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
@@ -82,7 +99,8 @@ def draw(
     return Path(out)
 
 
-def _make_folders(*folders: Path) -> None:
+def make_folders(*folders: Path) -> None:
+    """Make new folders. Raises FileExistsError, and makes none, if one of them exists."""
     for folder in folders:
         if folder.exists():
             raise FileExistsError(f"{folder} exists: expected a new folder to draw into")
@@ -99,29 +117,34 @@ def _draw_batch(
     num_samples: int | None,
     step: float | None,
 ) -> int:
-    settled: dict[int, tuple[Rig, list[Strength]]] = {}
+    settled = settle(batch, seed=seed, num_samples=num_samples)
+    rigs, firsts = [case.rig for case in settled], [case.strengths[0] for case in settled]
+    for case, wanted, run in zip(settled, (w for _, w in batch), record(rigs, firsts, step=step), strict=True):
+        name, rig = case.name, case.rig
+        fault = draw_fault(rig, np.random.default_rng([seed, case.index + 1, 0, 2])) if wanted.has_fault else None
+        write_dataset(rig, run, cases / name, name=name, description=description(rig), fault=fault)
+        text = sealed_toml(rig, *case.strengths, redrawn=case.redrawn, fault=fault)
+        (sealed / f"{name}.toml").write_text(text, encoding="utf-8")
+    return len(batch)
+
+
+def settle(batch: Sequence[tuple[int, Wanted]], *, seed: int, num_samples: int | None = None) -> list[Settled]:
+    """The rigs of these places, drawn again until their effects are as strong as wanted."""
+    settled: dict[int, Settled] = {}
     redrawn: dict[int, list[str]] = {index: [] for index, _ in batch}
     wanted_of = dict(batch)
-    open_cases = dict(batch)
-    while open_cases:
+    while len(settled) < len(batch):
         rigs = {
             i: _rig(i, wanted, seed=seed, tries=len(redrawn[i]), num_samples=num_samples)
-            for i, wanted in open_cases.items()
+            for i, wanted in batch
+            if i not in settled
         }
         for i, (rig, strengths) in tuned(rigs).items():
             if rig.kind not in LACKING or _are_met(strengths, wanted_of[i]):
-                settled[i] = (rig, strengths)
-                del open_cases[i]
+                settled[i] = Settled(i, rig, strengths, redrawn[i])
             else:
                 redrawn[i].append(rig.effect)
-    rigs, firsts = {i: rig for i, (rig, _) in settled.items()}, [strengths[0] for _, strengths in settled.values()]
-    for (i, rig), run in zip(rigs.items(), record(list(rigs.values()), firsts, step=step), strict=True):
-        name = f"case-{i + 1:03d}"
-        fault = draw_fault(rig, np.random.default_rng([seed, i + 1, 0, 2])) if wanted_of[i].has_fault else None
-        write_dataset(rig, run, cases / name, name=name, description=_description(rig), fault=fault)
-        text = sealed_toml(rig, *settled[i][1], redrawn=redrawn[i], fault=fault)
-        (sealed / f"{name}.toml").write_text(text, encoding="utf-8")
-    return len(batch)
+    return [settled[i] for i, _ in batch]
 
 
 def _are_met(strengths: Sequence[Strength], wanted: Wanted) -> bool:
@@ -131,7 +154,8 @@ def _are_met(strengths: Sequence[Strength], wanted: Wanted) -> bool:
     return all(s.met or (s.limited and s.gap_noise >= low) for s, low in zip(strengths, least, strict=False))
 
 
-def _description(rig: Rig) -> str:
+def description(rig: Rig) -> str:
+    """What a dataset says of itself."""
     return f"{rig.system.title}, recorded at {round(1.0 / rig.sample_time)} Hz; BSD-3-Clause."
 
 

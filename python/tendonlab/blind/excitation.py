@@ -17,6 +17,7 @@ Draw = np.random.Generator
 
 NUM_EXPERIMENTS = 10
 GRAVITY = 9.81  # m/s^2
+ARM = 0.25  # m from the axis to the payload
 
 
 def slow_reversals(time: Array, draw: Draw, *, size: float = 1.0) -> Array:
@@ -114,7 +115,7 @@ def session(
     sample_time: float,
     num_samples: int,
     has_repeats: bool = True,
-    arm: float = 0.25,
+    arm: float = ARM,
     plans: Mapping[str, Plans] = PLANS,
 ) -> list[Experiment]:
     """Ten experiments, "rich" or "poor", in the order recorded; one repeated at the start, in the middle and at the
@@ -125,14 +126,14 @@ def session(
     repeated, train, test = plans[excitation][0], plans[excitation][1:5], plans[excitation][5:]
     order = [("train", p) for p in train] + [("test", p) for p in test]
     order = [order[i] for i in draw.permutation(len(order))]
-    first = _reference(repeated, time, draw)
+    first = motion(repeated, time, draw)
     others = [first, first] if has_repeats else _fresh(repeated, time, draw)
     again, label = iter([first, *others]), "A" if has_repeats else None
     slots: list[tuple[str, str | None, Array, bool]] = []
     for i, (split, plan) in enumerate(order):
         if i in (0, 4):
             slots.append(("train", label, next(again), False))
-        slots.append((split, None, _reference(plan, time, draw), plan[2]))
+        slots.append((split, None, motion(plan, time, draw), plan[2]))
     slots.append(("train", label, next(again), False))
     return _runs(slots, draw, seconds=num_samples * sample_time, arm=arm)
 
@@ -140,7 +141,7 @@ def session(
 def _fresh(plan: Plan, time: Array, draw: Draw) -> list[Array]:
     """Two more motions of a kind, from a stream of their own: all else is drawn alike with and without repeats."""
     fresh = draw.spawn(1)[0]
-    return [_reference(plan, time, fresh) for _ in range(2)]
+    return [motion(plan, time, fresh) for _ in range(2)]
 
 
 def _runs(
@@ -167,7 +168,8 @@ def _runs(
     return runs
 
 
-def _reference(plan: Plan, time: Array, draw: Draw) -> Array:
+def motion(plan: Plan, time: Array, draw: Draw) -> Array:
+    """A motion of a kind about a random angle, from standstill."""
     shape, size, _ = plan
     centre = draw.uniform(-0.5, 0.5)
     wave = shape(time, draw, size=size)

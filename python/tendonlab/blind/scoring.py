@@ -19,7 +19,7 @@ SURE = 0.8  # probability above which a report names an effect with confidence
 PAIRS = ("pair_both", "pair_one", "pair_wrong")
 FAULTS = ("fault_kind", "fault_signal")
 OF_TRUTH = ("true_probability", "covered")
-HITS = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
+HITS = ("top1", "told_apart", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,6 +143,7 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
         "covered": _covered(told[0], truth.get("truth", {})) if told else np.nan,
         "top1": first in right and names_it,
         "ranked_first": first in right,
+        "told_apart": first in right and names_it and not _tied(report, first) - right,
         "top3": bool(right & set(names[:3])),
         "class_hit": _part(first, 2) in {_part(name, 2) for name in right},
         "element_hit": _part(first, 0) in {_part(name, 0) for name in right},
@@ -170,6 +171,11 @@ def _fault(fault: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, obj
     kind = [entry for entry in report.get("data", []) if entry["blocks"] and entry["problem"] == fault["problem"]]
     named = {str(name) for entry in kind for name in (entry["signal"], entry["experiment"], *entry.get("or", []))}
     return {"fault_kind": bool(kind), "fault_signal": bool(named & {*fault["signals"], *fault["experiments"]})}
+
+
+def _tied(report: Mapping[str, Any], effect: str) -> set[str]:
+    """What the data cannot tell from an effect."""
+    return {str(name) for group in report.get("indistinguishable", []) if effect in group for name in group}
 
 
 def _part(name: str, index: int) -> str:

@@ -59,13 +59,23 @@ def write_dataset(rig: Rig, run: Run, folder: Path, *, name: str, description: s
     if fault:
         logs = spoiled(logs, fault, outputs=tuple(output.name for output in rig.system.outputs))
     for experiment, log in logs.items():
-        table = {"t": np.char.mod("%.3f", log[TIME])}
-        for signal, column, _, digits in _signals(rig):
-            is_scaled = fault is not None and abs(fault.factor) != 1.0 and signal in fault.signals
-            table[column] = np.char.mod("%.9g" if is_scaled else digits, log[signal])
-        pd.DataFrame(table).to_csv(folder / f"{experiment}.csv", index=False)
+        _write_log(rig, log, folder / f"{experiment}.csv", fault=fault)
     text = dataset_toml(rig, name=name, description=description)
     (folder / "dataset.toml").write_text(text, encoding="utf-8")
+
+
+def add_experiment(rig: Rig, run: Run, folder: Path, *, name: str, description: str) -> None:
+    """Write the log of the rig's last experiment, the last lane of `run`, and dataset.toml with all experiments."""
+    _write_log(rig, _log(rig, run, -1), folder / f"{rig.experiments[-1].name}.csv")
+    (folder / "dataset.toml").write_text(dataset_toml(rig, name=name, description=description), encoding="utf-8")
+
+
+def _write_log(rig: Rig, log: Mapping[str, Array], path: Path, *, fault: Fault | None = None) -> None:
+    table = {"t": np.char.mod("%.3f", log[TIME])}
+    for signal, column, _, digits in _signals(rig):
+        is_scaled = fault is not None and abs(fault.factor) != 1.0 and signal in fault.signals
+        table[column] = np.char.mod("%.9g" if is_scaled else digits, log[signal])
+    pd.DataFrame(table).to_csv(path, index=False)
 
 
 def _log(rig: Rig, run: Run, lane: int) -> dict[str, Array]:

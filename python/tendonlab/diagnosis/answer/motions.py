@@ -24,10 +24,10 @@ class Motion:
     path: np.ndarray
     payload: float = 0.0
 
-    def payload_on(self, system: System) -> dict[str, float]:
-        """The parameters of `system` under the payload that differ from its own."""
+    def payload_of(self, system: System) -> dict[str, float]:
+        """What the load adds to the parameters of `system`."""
         row = system.info.with_role("payload")
-        return {} if row is None else {row.name: system.parameters[row.name] + self.payload}
+        return {} if row is None or not self.payload else {row.name: self.payload}
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,8 @@ def advise(case: Case, floor: Floor, first: Fitted, second: Fitted) -> list[dict
             continue
         if gain > SEPARATES:
             row = {"description": motion.words, "separates": names, "expected_gain": round(gain, 1)}
-            found.append(row | {"reference": _reference(case, motion, loop)})
+            added = {"add": motion.payload_of(case.system)} if motion.payload else {}
+            found.append(row | added | {"reference": _reference(case, motion, loop)})
     return sorted(found, key=lambda f: -float(str(f["expected_gain"])))[:3]
 
 
@@ -101,16 +102,16 @@ def _logged(case: Case, of: Fitted, motion: Motion, loop: Loop) -> Experiment:
     signals = dict(zip(case.outputs, made, strict=True)) | {info.inputs[0].name: np.clip(effort, -limit, limit)}
     signals |= {} if controller is None else {controller.reference: path(time)}
     data = pd.DataFrame({n: signals.get(n, 0.0 * time) for n in like.data.columns}, index=pd.Index(time, name="t"))
-    row = info.with_role("payload")
-    added = {row.name: motion.payload} if row is not None and motion.payload else {}
-    return Experiment(name="next", data=data, conditions=like.conditions, add=added, holds={info.inputs[0].name: False})
+    added, held = motion.payload_of(case.system), {info.inputs[0].name: False}
+    return Experiment(name="next", data=data, conditions=like.conditions, add=added, holds=held)
 
 
 def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, time: np.ndarray) -> dict[str, Any]:
     """A model driven along a motion by the loop, from rest, read at `time`."""
     system = of.system
     if motion.payload:
-        system = system.with_parameters(motion.payload_on(system))
+        loads = motion.payload_of(system).items()
+        system = system.with_parameters({name: system.parameters[name] + load for name, load in loads})
     c = case.outputs.index(loop.output)
     axis = system.info.outputs[c].axis or 0
     shape, _, _ = _core.rigid_motion(system.kind, system.values(), system.active())
