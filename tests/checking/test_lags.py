@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from checking.pendulum import MOTIONS, Motion, late_run, record
+from checking.pendulum import CONSTANT, COULOMB, GRAVITY, INERTIA, MOTIONS, VISCOUS, Motion, late_run, record
 from tendonlab.checking.clocks import SCANNED
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.lags import _saved, _steps, _weights, lags
@@ -103,3 +103,22 @@ def test_a_cold_run_is_not_late(tmp_path: Path) -> None:
         assert found is not None
         scanned = lags(Equation(data, data.system()), found).scanned
         assert bool(scanned[0] > SCANNED) == is_late
+
+
+def test_a_run_in_presliding_leads_no_other(tmp_path: Path) -> None:
+    """Bristles that bend 10 mrad hold a motion of 15 mrad: their torque comes late, as if the angle led."""
+    logs = record()
+    time = logs.runs["quick"][0]
+    angle = 0.015 * np.sin(2 * np.pi * 1.3 * time)
+    speed, acceleration = (np.gradient(of, time) for of in (angle, np.gradient(angle, time)))
+    bent = np.zeros(len(time))
+    for k, moved in enumerate(np.diff(angle), start=1):
+        bent[k] = np.clip(bent[k - 1] + moved / 0.01, -1.0, 1.0)
+    effort = INERTIA * acceleration + VISCOUS * speed + GRAVITY * np.sin(angle) + COULOMB * bent
+    rng = np.random.default_rng(3)
+    micro = (time, angle + 2e-5 * rng.standard_normal(len(time)), effort / CONSTANT)
+    data = replace(logs, runs={**logs.runs, "micro": micro}).write(tmp_path)
+    found = read_logs(data, data.system().info)
+    assert found is not None
+    scanned = lags(Equation(data, data.system()), found).scanned
+    assert scanned[-1] == 0.0

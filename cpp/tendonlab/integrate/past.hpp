@@ -14,7 +14,7 @@ class Past {
   /// Delays below this, in s, are expanded about the present instead of bounding every step.
   static constexpr double shortest = 1e-4;
 
-  /// Before `now` the state is constant. `sampled`: readings happen at instants that no step straddles.
+  /// Before `now` the axis moved at its present velocity. `sampled`: readings happen at instants that no step straddles.
   void begin(const T& position, const T& velocity, double now, bool sampled) {
     first_position = position, first_velocity = velocity, beginning = now;
     segment_read = sampled ? std::numeric_limits<int>::max() : -1;
@@ -45,7 +45,7 @@ class Past {
       return {y - late * (rate - 0.5 * late * change), rate - late * change};
     }
     if (segment_read < 0 || plain(then) <= beginning || pieces.empty())
-      return {lift<S>(first_position), lift<S>(first_velocity)};
+      return {lift<S>(first_position) - (beginning - then) * lift<S>(first_velocity), lift<S>(first_velocity)};
     const auto p = piece_at(plain(then));
     const S s = (then - p->start) * (1.0 / p->h);
     return {p->position.template at<S>(s), p->velocity.template at<S>(s)};

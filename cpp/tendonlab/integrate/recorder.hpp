@@ -79,7 +79,7 @@ class Recorder {
   void in_groups(const Step<Y>& s, const Interval& over, double reached, double ago, std::size_t& first,
                  Write&& write) {
     constexpr auto most = static_cast<std::ptrdiff_t>(Lanes::count);
-    if (first < time.size() && time[first] - ago < over.start) return;  // before the record all was as at its start
+    if (first < time.size() && time[first] - ago < over.start) return;  // `before` the record
     for (;;) {
       const auto from = time.begin() + static_cast<std::ptrdiff_t>(first);
       const bool full = time.end() - from >= most;
@@ -134,12 +134,18 @@ class Recorder {
     for (std::size_t c = 0; c < channels; ++c)
       for (; rows[c] && next[c] < time.size() && time[next[c]] - plain(delay[c]) <= reached; ++next[c]) {
         const T then = time[next[c]] - delay[c], share = (then - over.start) * (1.0 / over.length);
-        const bool begun = plain(share) > 0;  // before the record all was as at its start
-        Y y = s.at(begun ? share : T(0.0));
+        const bool begun = plain(share) > 0;
+        Y y = begun ? s.at(share) : before(s.from, over.start - then);
         y.at.time = begun ? then : T(over.start);
         Instant<System, T, Inputs> instant(port_modes, y, in);
         write(c, next[c], observe(system, instant, needs[c])[c]);
       }
+  }
+  /// So long before the record: all parts moved as at its start, and remembered the same.
+  static Y before(const Y& start, const T& ago) {
+    Y y = start;
+    for (std::size_t j = 0; j < n; ++j) y.at.position[j] = start.at.position[j] - ago * start.at.velocity[j];
+    return y;
   }
   /// Velocity, position, load and force of each port.
   template <class Values, class Inputs>

@@ -18,6 +18,7 @@ GROWTH = 1.15  # from one lag that is tried to the next
 FAR = 3  # steps from the common lag at which only another clock is likely to suit an experiment better
 OWN = 3.0  # nats by which a lag of its own must suit an experiment better than the common one, to start the search
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
+BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
 ROUNDS, CLOSE = 12, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
 NUDGE = 0.1  # of the step of the logs, by which the column of a lag is found
 
@@ -135,8 +136,8 @@ def _steps(
 
 def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     """The lag of all outputs together in each experiment, in whole steps of the logs, at which the equation fits
-    best; and the nats by which it does so where that lag lies far from the common one, and friction of its own brings
-    less. Without a mass, hysteresis resembles a lag of any size: none are counted."""
+    best; and the nats by which it does so where that lag lies far from the common one, and friction of its own, or
+    friction in presliding, brings less. Without a mass, hysteresis resembles a lag of any size: none are counted."""
     kept, num = logs.regular(SCANNED), len(equation.dataset.experiments)
     at = terms(equation, logs.at(kept))
     fit = at.fit(np.full(len(at.size), ROUGH_SHARE))
@@ -161,12 +162,14 @@ def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
         moved, left = earlier(int(steps))
         cost[k] = np.bincount(moved.run, np.sum(np.log1p(left**2), axis=0), num)
     common = int(np.argmin(np.sum(cost, axis=1)))
-    own = _by_friction(equation, *earlier(int(tried[common])))
+    there = earlier(int(tried[common]))
+    own = _by_friction(equation, *there)
     differs = cost[common] - np.min(cost, axis=0) > OWN / ROUGH_SHARE
     best = np.where(differs, np.argmin(cost, axis=0), common)
     inside = (best > 0) & (best < len(tried) - 1)
     gained = cost[common] - np.min(cost, axis=0)
     far = inside & (np.abs(tried[best] - tried[common]) >= FAR) & (gained > own) & bool(equation.moved)
+    far &= [bool(far[i]) and gained[i] > _by_bristles(equation, *there, i) for i in range(num)]
     nats = 0.5 * (FREEDOM + 1) * ROUGH_SHARE * gained
     return np.where(inside, tried[best], 0) * logs.step, np.where(far, nats, 0.0)
 
@@ -182,6 +185,27 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
             here = logs.run == i
             saved[i] += _saved(left[k, here], columns[here])
     return np.maximum(saved - np.median(saved), 0.0)
+
+
+def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int) -> float:
+    """The same of one experiment in presliding: while a motion is too small to slide, friction is a spring, and torque
+    seems late."""
+    here, saved = logs.run == experiment, 0.0
+    for k, name in enumerate(equation.moved):
+        position, speed = logs.moving[name][:2, here]
+        for deflection in _deflections(position):
+            columns = np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300), deflection], axis=1)
+            saved = max(saved, _saved(left[k, here], columns))
+    return saved
+
+
+def _deflections(position: np.ndarray) -> np.ndarray:
+    """Of bristles that a motion bends by these shares of its travel before they slide, relative (shares, samples)."""
+    most = np.array(BENDS) * max(float(np.ptp(position)), 1e-300)
+    bent = np.zeros((len(most), len(position)))
+    for k, moved in enumerate(np.diff(position), start=1):
+        bent[:, k] = np.clip(bent[:, k - 1] + moved / most, -1.0, 1.0)
+    return bent
 
 
 def _saved(left: np.ndarray, columns: np.ndarray) -> float:
