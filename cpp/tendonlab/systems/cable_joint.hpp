@@ -17,7 +17,9 @@ struct CableJoint : SystemDefaults {
                                     equation =
                                         "I(theta) theta'' = r cos(theta) (F_1 - F_2) + tau_g(theta) + 2 m_2 l_1 d_21 "
                                         "sin(theta) theta'^2; J_m omega' = k i - friction - N (F_act_1 - F_act_2); "
-                                        "F_i = max(0, T + K x_i + c x_i'); F_act_i = F_i + F_a_i";
+                                        "F_i = max(0, T + K x_i + c x_i'); F_act_i = F_i + F_a_i; x_1 = u - r "
+                                        "sin(theta) + x_0 = -x_2, u: travel of nut 1, x_0: stretch that holds the "
+                                        "joint at theta = 0";
   static constexpr int dof = 2, stated = 1, directions = 4, driver = 1;
   static constexpr bool commanded = true, moving = true;
   enum PortOf {

@@ -16,7 +16,8 @@ template <class T>
 struct Ripple {
   static constexpr std::string_view name = "ripple", noun = "motion ripple", source = "S2 fig. 12c",
                                     equation = "v (1 + s sin(phi) + c cos(phi))",
-                                    summary = "gear ripple: the output runs ahead and behind once a turn";
+                                    summary =
+                                        "gear ripple: the output runs ahead and behind once a turn; phi: its own angle";
   static constexpr unsigned roles = role::motion, sees = sees_position;
   T sine, cosine;
 
