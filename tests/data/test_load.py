@@ -202,11 +202,11 @@ def test_what_is_absent_is_zero_and_said(draft, write):
     assert (found["gravity_torque"], found["torque_constant"]) == ((0.0, 0.0), (1.0, 0.0))
     assert found["coulomb"] == (0.0, None)
     assert dataset.warnings == (
-        "gravity_torque: no nominal value given; 0 is assumed, exactly",
-        "coulomb: no nominal value given; 0 is assumed",
+        "No nominal value given for gravity_torque; 0 is assumed, exactly",
+        "No nominal value given for coulomb; 0 is assumed",
     )
     draft.toml["signals"]["motor_torque"]["unit"] = "V"
-    assert "torque_constant: no nominal value given; 1 is assumed, exactly" in load(write(draft)).warnings
+    assert "No nominal value given for torque_constant; 1 is assumed, exactly" in load(write(draft)).warnings
 
 
 def test_doubts_are_said_in_warnings(draft, write):

@@ -56,7 +56,7 @@ def test_nothing_is_said_where_all_is_well() -> None:
 
 def test_a_parameter_far_from_its_stated_value_is_named() -> None:
     (text,) = said(x=-4.4)
-    assert text == "inertia was fitted at 0.0112 kg·m²: 4 standard deviations from the stated 0.02 ± 0.002."
+    assert text == "Inertia was fitted at 0.0112 kg·m²: 4 standard deviations from the stated 0.02 ± 0.002."
 
 
 @pytest.mark.parametrize("sd", [None, 0.0, np.inf])

@@ -14,6 +14,7 @@ import pytest
 from tendonlab.errors import ParameterError
 from tendonlab.report import effects_table
 from tendonlab.report.diagnosis import Diagnosis, SideTable
+from tendonlab.report.document import _facts
 from tendonlab.report.figures import LARGEST_SVG, embed
 from tendonlab.report.write import prepare_folder
 
@@ -226,6 +227,16 @@ def test_elements_that_are_ruled_out_share_a_row(undrawn: Diagnosis, tmp_path: P
     assert "Cable" not in page.text
 
 
+def test_figures_say_in_words_that_held_out_runs_got_worse(with_effect: Diagnosis) -> None:
+    worse = {"value": -5.3, "ci95": [-8.0, -2.0]}
+    of_both = replace(with_effect, shrinkage={"from_nominal": worse, "from_refitted": worse})
+    of_tuning = replace(of_both, selected=(), verdict="parameters_only")
+    after = "tuning and the added effects made held-out runs worse"
+    assert _facts(of_both)[1] == ("6.3 times as large", "as the held-out gap of the simulator as stated", after)
+    assert _facts(of_both)[2][1:] == ("as the held-out gap after tuning", "the added effects made held-out runs worse")
+    assert _facts(of_tuning)[1][2] == "tuning made held-out runs worse"
+
+
 def test_the_summary_names_no_regime_that_chance_explains(undrawn: Diagnosis, tmp_path: Path) -> None:
     regimes = [
         {"coordinate": "joint_velocity", "range": [0.0, 0.05], "share": 0.4, "p_value": 0.01},
@@ -246,7 +257,7 @@ def test_fitted_parameters_and_settings_carry_their_units(undrawn: Diagnosis, tm
 def test_parameters_that_nothing_informs_show_no_interval(undrawn: Diagnosis, tmp_path: Path) -> None:
     silent = {"value": 0.01, "ci95": [0.004, 0.016], "unit": "m", "nominal": 0.01, "informed": False}
     page = read(replace(undrawn, details={"parameters": {"motor_radius_2": silent}}), tmp_path)[1]
-    assert "not constrained by these data" in page.text
+    assert "held: a small change has no effect" in page.text
     assert not {"4 to 16", "0.004 to 0.016"} & set(page.text)
 
 

@@ -54,6 +54,9 @@ def test_small_words() -> None:
     assert words.words("joint_stribeck_velocity") == "joint Stribeck velocity"
     assert words.parameter_words("joint_stribeck_velocity", element="joint") == "Stribeck velocity"
     assert words.capital("joint") == "Joint"
+    for name in ("joint:stribeck is off", "dataset.toml, key format", "angle_offset: odd"):
+        assert words.capital(name) == name
+    assert words.capital("backlash: play") == "Backlash: play"
     assert [words.listing(items) for items in (["a"], ["a", "b"], ["a", "b", "c"], [])] == [
         "a",
         "a and b",
@@ -92,6 +95,32 @@ def test_shares_and_probabilities() -> None:
     assert numbers.percent(0.6, [-0.05, 0.7]) == "60 % (−5 to 70 %)"
     assert [numbers.percent(value) for value in (0.996, 1.0, -0.001, float("nan"))] == ["99.6 %", "100 %", "0 %", "–"]
     assert [numbers.probability(value) for value in (1.0, 0.934, 0.001, 0.0)] == ["> 0.99", "0.93", "< 0.01", "0.00"]
+
+
+def test_an_edge_of_a_region_that_is_noise_about_zero_reads_0() -> None:
+    assert numbers.region([6.7e-5, 0.309]) == "0 to 0.309"
+    assert numbers.region([-0.012, 1.8e-17]) == "−0.012 to 0"
+    assert numbers.region([0.004, 0.309]) == "0.004 to 0.309"
+    assert numbers.region([0.0, 0.0]) == "0 to 0"
+    assert numbers.region(None) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "expected"),
+    [
+        ("joint_velocity", "two_inertia", "joint velocity"),
+        ("contact_load", "two_inertia", "pulley contact load"),
+        ("stiction_2_velocity", "cable_joint", "guide 2 velocity"),
+        ("gear_velocity", "cable_joint", "gear input velocity"),
+        ("gear_2_velocity", "tendon_routing", "gear 2 velocity"),
+        ("bushing_1_position", "cable_joint", "bushing 1 position"),
+        ("end_11_load", "ccsrm", "cable end 11 load"),
+        ("time", "ccsrm", "time"),
+        ("cable_speed", "another", "cable speed"),
+    ],
+)
+def test_coordinates_in_words(name: str, kind: str, expected: str) -> None:
+    assert words.coordinate_words(name, kind) == expected
 
 
 def test_units() -> None:
@@ -152,7 +181,8 @@ def test_what_may_imitate_the_unknown_is_not_called_established(with_effect: Dia
     assert "Stribeck friction at the joint is established and explains 32 % of" in partly.sentence
     assert replace(partly, effects=doubtful).sentence.startswith(
         "The library explains only a part of the gap. Stribeck friction at the joint helps on the training experiments "
-        "and explains 32 % of the excess error; it may only imitate what is unknown."
+        "and explains 32 % of the excess error; it may only imitate what is unknown, so compare the fitted values "
+        "with what you know of the rig."
     )
 
 
@@ -186,8 +216,12 @@ def test_the_sentence_is_never_surer_than_its_verdict(with_effect: Diagnosis) ->
 
 
 def test_an_effect_that_does_not_help_is_not_said_to_shrink_the_gap(with_effect: Diagnosis) -> None:
-    worse = {**with_effect.shrinkage, "from_refitted": {"value": -0.31, "ci95": [-0.4, -0.24]}}
-    assert "Adding it does not shrink the held-out gap." in replace(with_effect, shrinkage=worse).sentence
+    def told(value: float) -> str:
+        shrinkage = {**with_effect.shrinkage, "from_refitted": {"value": value, "ci95": [-0.4, 0.24]}}
+        return replace(with_effect, shrinkage=shrinkage).sentence
+
+    assert "Adding it does not shrink the held-out gap." in told(-0.01)
+    assert "Adding it makes held-out runs worse: their gap becomes 1.3 times as large." in told(-0.31)
     useless = replace(with_effect, verdict="unknown_effect", explained=0.0).sentence
     assert "is established but explains nothing of the excess error on held-out experiments" in useless
 

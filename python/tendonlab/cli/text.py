@@ -92,7 +92,7 @@ def identification_text(fit: Identification) -> str:
         shown = [float(row[key]) for key in ("nominal", "value", "ci95_lower", "ci95_upper")]
         factor, unit = prefixed(shown, str(row["unit"]))
         nominal, value, lower, upper = (factor * each for each in shown)
-        doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "not constrained by these data: held"
+        doubt = "at its bound" if row["at_bound"] else "" if row["informed"] else "held: a small change has no effect"
         rows.append([str(name), number(nominal), *estimate(value, [lower, upper]), unit, doubt])
     num = len(fit.residuals)
     fitted = f"{num} experiments fitted together" if num > 1 else "1 experiment fitted"

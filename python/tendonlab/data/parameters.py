@@ -64,7 +64,8 @@ def assumptions(
     gain = info.with_role("command_gain")
     silent = written | stated | ({gain.name} if gain is not None and command_is_effort else set())
     return [
-        f"{name}: no nominal value given; {parameter.value:g} is assumed" + (", exactly" if parameter.sd == 0.0 else "")
+        f"No nominal value given for {name}; {parameter.value:g} is assumed"
+        + (", exactly" if parameter.sd == 0.0 else "")
         for name, parameter in parameters.items()
         if name not in silent
     ]

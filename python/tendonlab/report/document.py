@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from tendonlab.report import numbers, words
-from tendonlab.report.sentence import sentence
+from tendonlab.report.sentence import WORSE, sentence
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -86,7 +86,8 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
         if entry is not None and entry.get("value") is not None and (key == "from_nominal" or diagnosis.selected):
             bounds = entry.get("ci95")
             detail = f"95 %: {numbers.percent_span(bounds)}" if bounds is not None else ""
-            facts.append((numbers.percent(entry["value"]), title, detail))
+            grown = entry["value"] <= WORSE
+            facts.append(_growth(diagnosis, key) if grown else (numbers.percent(entry["value"]), title, detail))
     if diagnosis.explained is not None and diagnosis.selected:
         share = numbers.percent(diagnosis.explained)
         facts.append(
@@ -98,6 +99,15 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
             )
         )
     return facts
+
+
+def _growth(diagnosis: Diagnosis, key: str) -> tuple[str, str, str]:
+    """The figure in place of a share that was removed, where held-out experiments got worse."""
+    before, worse = "after tuning", "the added effects"
+    if key == "from_nominal":
+        before, worse = "of the simulator as stated", f"tuning{f' and {worse}' * bool(diagnosis.selected)}"
+    value = (diagnosis.shrinkage[key] or {})["value"]
+    return numbers.times_as_large(value), f"as the held-out gap {before}", f"{worse} made held-out runs worse"
 
 
 def _width(share: float | None) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 ABSENT = "–"
 MOST_DIGITS = 6  # of a bound of a narrow span
+_EDGE = 0.01  # share of the other edge of a region below which an edge is none
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 _TAKES_PREFIX = ("rad", "m", "N", "s", "A", "V")
@@ -32,6 +33,14 @@ def span(bounds: Sequence[float] | None, digits: int = 3) -> str:
         return ""
     low, high = (number(bound, _telling(bounds, digits)) for bound in bounds)
     return f"{low} to {high}"
+
+
+def region(bounds: Sequence[float] | None, digits: int = 3) -> str:
+    """Where a coordinate lies, as a `span`: an edge below 1 % of the other is noise about zero and reads 0."""
+    if bounds is None:
+        return ""
+    least = _EDGE * max(map(abs, bounds))
+    return span([0.0 if abs(bound) < least else bound for bound in bounds], digits)
 
 
 def estimate(value: float | None, bounds: Sequence[float | None] | None, digits: int = 3) -> tuple[str, str]:
@@ -72,6 +81,11 @@ def percent_span(bounds: Sequence[float]) -> str:
     """Two shares as "88–94 %", or "−5 to 70 %" where a dash would read as a sign."""
     low, high = map(_hundredths, bounds)
     return f"{low}{' to ' if min(bounds) < 0 else '–'}{high} %"
+
+
+def times_as_large(shrinkage: float) -> str:
+    """What a negative shrinkage makes of a gap: "6.3 times as large"."""
+    return f"{number(1.0 - shrinkage, 2)} times as large"
 
 
 def _hundredths(value: float) -> str:

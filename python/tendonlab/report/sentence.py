@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tendonlab.report.numbers import percent, probability
+from tendonlab.report.numbers import percent, probability, times_as_large
 from tendonlab.report.words import capital, changed_friction, phrases
 
 if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
 
 ON_FLOOR = 1.1  # noise floors of held-out error that read as the floor itself
+WORSE = -0.05  # shrinkage below which the gap has grown, and not by rounding
 EVEN = 0.5  # probability below which what was selected is not called established
 _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five"}
 
@@ -54,6 +55,8 @@ def _shrinks(diagnosis: Diagnosis, start: str, subject: str) -> str:
     shrinkage = diagnosis.shrinkage[start]
     if shrinkage is None or shrinkage.get("value") is None:
         return ""
+    if shrinkage["value"] <= WORSE:
+        return f" {subject} makes held-out runs worse: their gap becomes {times_as_large(shrinkage['value'])}."
     if shrinkage["value"] <= 0:
         return f" {subject} does not shrink the held-out gap."
     return f" {subject} shrinks the held-out gap by {percent(shrinkage['value'], shrinkage.get('ci95'))}."
@@ -122,7 +125,10 @@ def _unknown(diagnosis: Diagnosis) -> str:
         found, rest = f"{'is' if one else 'are'} established", "the rest is unknown"
     else:
         found = f"{'helps' if one else 'help'} on the training experiments"
-        rest = f"{'it' if one else 'they'} may only imitate what is unknown"
+        rest = (
+            f"{'it' if one else 'they'} may only imitate what is unknown, so compare the fitted values with what you "
+            "know of the rig"
+        )
     effects = f"{capital(phrases(diagnosis.selected, diagnosis.system))} {found}"
     if not diagnosis.explained:
         share = f"but {'explains' if one else 'explain'} nothing of the excess error on held-out experiments"

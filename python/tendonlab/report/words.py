@@ -25,6 +25,8 @@ REPLAYS = {
 _PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "bowden": "Bowden", "ar": "AR", "rms": "RMS"}
 _RATES = {"velocity": 1, "speed": 1, "acceleration": 2}
 _DECISIVE = 100.0  # nats: whatever lies beyond decides as surely
+_IN_CODE = frozenset("_.:")
+_PORTS = {("cable_joint", "gear"): "gear input"}  # whose motion is that of one side
 _COORDINATES = {"time": "s", "t": "s", "frequency": "Hz", "temperature": "degC"}
 
 
@@ -40,6 +42,17 @@ def element_words(element: str, kind: str, *, article: bool = False) -> str:
     place = places.get(element, f"in the {words(element)}")
     noun = place.partition(" ")[2]
     return noun if article else noun.removeprefix("the ")
+
+
+def coordinate_words(name: str, kind: str) -> str:
+    """A coordinate of a port of the system `kind`: "stiction_2_velocity" of a cable_joint is "guide 2 velocity"."""
+    port, _, quantity = name.rpartition("_")
+    own = {row.name: row.element for row in system_info(kind).ports} if kind in kinds() else {}
+    if port not in own:
+        return words(name)
+    number = [part for part in port.split("_") if part.isdigit()] if port != own[port] else []
+    noun = _PORTS.get((kind, port)) or element_words(own[port], kind)
+    return " ".join([noun.removesuffix("s") if number else noun, *number, quantity])
 
 
 def phrase(name: str, kind: str) -> str:
@@ -69,8 +82,10 @@ def parameter_words(name: str, *, element: str = "") -> str:
 
 
 def capital(text: str) -> str:
-    """`text` with its first letter as at the start of a sentence."""
-    return text[:1].upper() + text[1:]
+    """`text` with its first letter as at the start of a sentence; a name in code ("joint:stribeck", "dataset.toml")
+    stays as it is."""
+    first = text.partition(" ")[0].rstrip(".:,;")
+    return text if _IN_CODE.intersection(first) else text[:1].upper() + text[1:]
 
 
 def listing(items: Iterable[str], *, last: str = "and") -> str:

@@ -182,7 +182,8 @@ def _what_next(
     """The proposed experiments, best first, and the references of those that are motions, by name."""
     motions, references = _numbered(_next(case, floor, search))
     is_unknown = verdict.verdict == "unknown_effect"
-    explored = explore(regimes, notes.units(case), repeated=floor.repeated) if is_unknown else []
+    kind = case.system.kind
+    explored = explore(regimes, notes.units(case), kind, repeated=floor.repeated) if is_unknown else []
     return (*motions, *explored, *_measurements(case, verdict.indistinguishable)), references
 
 

@@ -13,8 +13,8 @@ from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
-from tendonlab.report.numbers import unit_text
-from tendonlab.report.words import capital, changed_friction
+from tendonlab.report.numbers import number, unit_text
+from tendonlab.report.words import capital, changed_friction, words
 
 PULLED = 4.0  # stated standard deviations from the stated value
 WORSE = 1.05  # ratio of held-out mean squares, above the floor, that is no accident of rounding
@@ -49,10 +49,10 @@ def _pulled(case: Case, final: Fitted) -> list[str]:
         value = free.value(float(x))
         away = abs(value - stated.value) / stated.sd
         if away > PULLED:
-            fitted = f"{value:.3g} {unit_text(final.system.unit(free.name))}".rstrip()
+            fitted = f"{number(value)} {unit_text(final.system.unit(free.name))}".rstrip()
             said.append(
-                f"{free.name} was fitted at {fitted}: {away:.0f} standard deviations from the stated "
-                f"{stated.value:.3g} ± {stated.sd:.2g}."
+                f"{capital(words(free.name))} was fitted at {fitted}: {away:.0f} standard deviations from the stated "
+                f"{number(stated.value)} ± {number(stated.sd, 2)}."
             )
     return said
 
@@ -62,7 +62,8 @@ def _worse(stages: Mapping[str, Replayed], floor: Floor, added: Sequence[str]) -
     steps = [("nominal", "refitted", "Tuning the parameters")]
     steps += [("refitted", "with_effect", f"Adding {' and '.join(added)}")] if added else []
     return [
-        f"{change} made the held-out error larger: {error[before]:.3g} noise floors before, {error[after]:.3g} after."
+        f"{change} made the held-out error larger: {number(error[before])} noise floors before, "
+        f"{number(error[after])} after."
         for before, after, change in steps
         if error[after] ** 2 > WORSE * max(1.0, error[before] ** 2)
     ]
@@ -75,8 +76,8 @@ def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
         swing = float(np.sqrt(np.mean([np.nanvar(row) for row in records if np.isfinite(row).any()] or [np.nan])))
         if floor.rms[c] > swing:
             said.append(
-                f"The noise floor of {case.outputs[c]} ({floor.rms[c]:.2g}) exceeds its motion (rms {swing:.2g}): what "
-                "it says decides nothing."
+                f"The noise floor of {case.outputs[c]} ({number(floor.rms[c], 2)}) exceeds its motion (rms "
+                f"{number(swing, 2)}): what it says decides nothing."
             )
     return said
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tendonlab.report.numbers import region, unit_text
+from tendonlab.report.words import coordinate_words
+
 CLEAR = 0.05  # chance below which errors that gather in one regime are no accident
 FOLLOWS = {
     "position": "slow reversals at one speed, {there} and elsewhere: errors that belong to a place return there",
@@ -21,21 +24,18 @@ REPEAT = (
 )
 
 
-def explore(regimes: Sequence[Mapping[str, Any]], units: Mapping[str, str], *, repeated: bool) -> list[dict[str, Any]]:
+def explore(
+    regimes: Sequence[Mapping[str, Any]], units: Mapping[str, str], kind: str, *, repeated: bool
+) -> list[dict[str, Any]]:
     """Measurements for a verdict of an unknown cause: in the regimes that clearly hold most of the errors, one of each
-    kind, and repeats where there are none. `units`: of each coordinate."""
+    quantity, and repeats where there are none. `units`: of each coordinate. `kind`: of the system."""
     found: dict[str, str] = {}
     for regime in regimes:
         name = str(regime["coordinate"])
-        kind = name.rpartition("_")[2]
-        if kind in FOLLOWS and regime["p_value"] < CLEAR:
-            found.setdefault(kind, FOLLOWS[kind].format(there=_there(name, regime["range"], units)))
+        quantity = name.rpartition("_")[2]
+        if quantity in FOLLOWS and regime["p_value"] < CLEAR:
+            there = f"{coordinate_words(name, kind)} of {region(regime['range'], 2)} {unit_text(units.get(name, ''))}"
+            found.setdefault(quantity, FOLLOWS[quantity].format(there=f"at a {there.rstrip()}"))
     found = found or {"time": FOLLOWS["time"]}
     words = [*([] if repeated else [REPEAT]), *found.values()]
     return [{"description": text, "separates": [], "expected_gain": None} for text in words]
-
-
-def _there(name: str, limits: Sequence[float], units: Mapping[str, str]) -> str:
-    """Such as "at a joint position of 0.66 to 0.89 rad"."""
-    low, high = (f"{value:.2g}".replace("-", "−") for value in limits)
-    return f"at a {name.replace('_', ' ')} of {low} to {high} {units.get(name, '').replace('*', '·')}".rstrip()

@@ -80,12 +80,26 @@ def _on_the_fits(search: Search) -> list[str]:
     if bound:
         messages.append(f"At a bound: {', '.join(bound)}. Such a value is a limit and not an estimate.")
     if silent:
-        messages.append(f"Not constrained by these data and held at the nominal value: {', '.join(silent)}.")
-    for model in {m.added: m for m in (search.tuned, final)}.values():
-        if not model.converged:
-            name = f"the model with {', '.join(model.added)}" if model.added else "the refitted simulator"
-            messages.append(f"The fit of {name} did not converge: {model.message}.")
-    return messages
+        messages.append(
+            f"Held at the nominal value, since a small change leaves every prediction as it is: {', '.join(silent)}. "
+            "At a switch, such as a hard gate, a large change may still matter."
+        )
+    models = {m.added: m for m in (search.tuned, final)}.values()
+    return messages + [_stopped(model, search) for model in models if not model.converged]
+
+
+def _stopped(model: Fitted, search: Search) -> str:
+    """What it costs that a fit ended before it converged."""
+    if model.added:
+        named = f"the model with {', '.join(model.added)}"
+        cost = "Values and intervals of its parameters are tentative"
+    else:
+        named = "the refitted simulator"
+        cost = f"Tuning alone may explain more than is reported{', and the effects less' * bool(search.final.added)}"
+    return (
+        f"The fit of {named} did not converge: {model.message}. {cost}. If that matters, state nominal values closer "
+        "to the rig, or the sd of those that you know, and diagnose again."
+    )
 
 
 def _on_the_failed(search: Search) -> list[str]:

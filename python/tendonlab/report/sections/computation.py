@@ -106,7 +106,7 @@ def _parameter_row(name: str, entry: Mapping[str, Any]) -> list[Cell]:
     value, nominal, *ends = (None if number is None else factor * number for number in shown)
     told, interval = numbers.estimate(value, ends, 4)
     if not entry.get("informed", True):
-        interval = "not constrained by these data"
+        interval = "held: a small change has no effect"
     title = Cell(capital(words(str(name))), soft=f"({unit})" if unit else "")
     return [title, Cell(numbers.number(nominal, 4)), Cell(told), Cell(interval)]
 

@@ -99,7 +99,8 @@ def _regimes(diagnosis: Diagnosis) -> Table:
 
 def _regime_words(diagnosis: Diagnosis, regime: Mapping[str, Any]) -> str:
     unit = numbers.unit_text(words.unit_of(regime["coordinate"], diagnosis.units))
-    return f"{words.words(regime['coordinate'])} {numbers.span(regime.get('range'))} {unit}".rstrip()
+    name = words.coordinate_words(regime["coordinate"], diagnosis.system)
+    return f"{name} {numbers.region(regime.get('range'))} {unit}".rstrip()
 
 
 def _share(value: float | None, text: Callable[[float | None], str]) -> Cell:
