@@ -14,7 +14,7 @@ class Past {
   /// Delays below this, in s, are expanded about the present instead of bounding every step.
   static constexpr double shortest = 1e-4;
 
-  /// Before `now` the axis moved at its present velocity. `sampled`: readings happen at instants that no step straddles.
+  /// Before `now` the axis moved as it does now. `sampled`: readings happen at instants that no step straddles.
   void begin(const T& position, const T& velocity, double now, bool sampled) {
     first_position = position, first_velocity = velocity, beginning = now;
     segment_read = sampled ? std::numeric_limits<int>::max() : -1;
