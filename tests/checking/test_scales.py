@@ -27,7 +27,9 @@ def left(level: list[float], strain: float) -> Fit:
         (([0.31, 0.02], 8.0), ([0.29, 0.01], 3.9), True),
         (([0.31, 0.02], 8.0), ([0.2, 0.01], 8.0), True),
         (([0.31, 0.02], 1.9), ([0.29, 0.01], 0.1), False),  # nothing was strained
-        (([0.04, 0.02], 1.9), ([0.04, 0.02], 1.9), True),  # nothing balances badly
+        (([0.04, 0.02], 1.9), ([0.01, 0.01], 1.9), False),  # nothing balances badly, nothing is strained
+        (([0.029, 0.024], 4.4), ([0.034, 0.024], 3.5), False),  # cables with compliant ends, and another clock
+        (([0.015, 0.015], 8.9), ([0.015, 0.015], 0.6), True),  # a doubled constant that the parameters make up for
         (([0.31, 0.91], 8.0), ([0.02, 1.88], 1.0), False),  # another equation is spoilt
         (([0.31, 0.91], 8.0), ([0.02, 1.2], 1.0), True),
         (([0.31, 0.02], 8.0), ([0.02, 0.6], 1.0), True),

@@ -103,9 +103,10 @@ def _heals(fit: Fit, base: Fit, told: np.ndarray) -> bool:
 def _helps(fit: Fit, base: Fit, told: np.ndarray) -> bool:
     """Whether any equation that balances badly balances better, or beliefs that the logs strain are relieved; and no
     equation is spoilt. One that balances well anyway, as that of a stiff cable does, may gain many nats from a factor
-    that no other equation asks for; and so may one that lacks something large, as a stop."""
+    that no other equation asks for; and so may one that lacks something large, as a stop. Where all balance well, as
+    between compliant ends, beliefs must be relieved."""
     suspect = told & (base.level >= SUSPECT)
-    mends = not suspect.any() or bool(np.any(fit.level[suspect] < MENDED * base.level[suspect]))
+    mends = bool(np.any(fit.level[suspect] < MENDED * base.level[suspect]))
     relieves = base.strain >= STRAINED and fit.strain < RELIEVED * base.strain
     return (mends or relieves) and not np.any(fit.level > np.fmax(EXPLAINED, SPOILT * base.level))
 
