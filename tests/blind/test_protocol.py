@@ -326,9 +326,9 @@ def test_flow_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(drawing, "draw", draw_less)
     lines = re.findall(r"^python -m tendonlab\.blind (.*)$", PAGE.read_text(encoding="utf-8"), re.M)
-    assert [line.split()[0] for line in lines] == ["draw", "run", "score"]
+    assert [line.split()[0] for line in lines] == ["draw", "run", "score", "follow"]
     fake_reports(monkeypatch, Path(shlex.split(lines[2])[1]), right=True)
-    for line in lines:
+    for line in lines[:3]:  # no answer of these ends in a tie to follow
         monkeypatch.setattr(sys, "argv", ["blind", *shlex.split(line)])
         assert commands.main() == 0, capsys.readouterr().err
     assert re.search(r"verdict right +1\n", capsys.readouterr().out)
