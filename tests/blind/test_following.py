@@ -46,7 +46,7 @@ def test_a_tied_case_gets_the_advised_experiment_and_keeps_its_own(drawn: Drawn,
     truths = [(place / "case-002.toml").read_text() for place in (drawn.sealed, tmp_path / "truth")]
     assert truths[0] == truths[1]
     log, gear = pd.read_csv(case / new["file"]), 10.0
-    assert np.allclose(log["qr"] / gear, np.interp(log["t"], TIME, PATH), atol=0.3 * np.ptp(PATH))
+    assert np.allclose(log["qr"] / gear, np.interp(log["t"], TIME, PATH), atol=1e-7)  # digits of the log
     assert np.corrcoef(log["ql"], np.interp(log["t"], TIME, PATH))[0, 1] > 0.9
 
 

@@ -111,7 +111,6 @@ def test_an_edge_of_a_region_that_is_noise_about_zero_reads_0() -> None:
         ("joint_velocity", "two_inertia", "joint velocity"),
         ("contact_load", "two_inertia", "pulley contact load"),
         ("stiction_2_velocity", "cable_joint", "guide 2 velocity"),
-        ("gear_velocity", "cable_joint", "gear input velocity"),
         ("gear_2_velocity", "tendon_routing", "gear 2 velocity"),
         ("bushing_1_position", "cable_joint", "bushing 1 position"),
         ("end_11_load", "ccsrm", "cable end 11 load"),

@@ -29,6 +29,16 @@ def test_what_hardly_moves_at_first_is_at_rest(drift: float) -> None:
     assert motion_at_start(TIME, moving)[1] == pytest.approx(0.02 + 0.8 * drift, rel=1e-3)
 
 
+def test_a_motion_that_brakes_or_sets_off_at_once_has_its_first_velocity() -> None:
+    """Curved over the first 20 ms: a line would see half of what it loses or gains there."""
+    noise = 1e-6 * np.random.default_rng(2).standard_normal(len(TIME))
+    t = np.minimum(TIME - 3.0, 0.02)
+    position, velocity = motion_at_start(TIME, 0.2 - t + 45.0 * t**2 + noise)
+    assert (position, velocity) == (pytest.approx(0.2, abs=5e-6), pytest.approx(-1.0, abs=2e-3))
+    position, velocity = motion_at_start(TIME, 0.2 + 45.0 * t**2 + noise)
+    assert (position, velocity) == (pytest.approx(0.2, abs=5e-6), 0.0)
+
+
 def test_few_samples_are_a_start_at_rest() -> None:
     assert motion_at_start(TIME[:6], np.arange(6.0)) == (2.5, 0.0)
 

@@ -38,7 +38,7 @@ class Settled:
 
     @property
     def name(self) -> str:
-        return f"case-{self.index + 1:03d}"
+        return name_of(self.index)
 
 
 def draw(
@@ -152,6 +152,11 @@ def _are_met(strengths: Sequence[Strength], wanted: Wanted) -> bool:
     its range."""
     least = (wanted.strengths[0], wanted.second[0])
     return all(s.met or (s.limited and s.gap_noise >= low) for s, low in zip(strengths, least, strict=False))
+
+
+def name_of(index: int) -> str:
+    """The case at a place of the series."""
+    return f"case-{index + 1:03d}"
 
 
 def description(rig: Rig) -> str:

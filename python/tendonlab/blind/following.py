@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from .description import Array, Experiment
-from .drawing import Settled, description, make_folders, settle
+from .drawing import Settled, description, make_folders, name_of, settle
 from .excitation import ARM, GRAVITY, RICH, motion
 from .planning import plan
 from .rig import Rig
@@ -54,7 +54,7 @@ def follow(
     folder exists.
     """
     advised = _advised(Path(reports))
-    batch = [(i, w) for i, w in enumerate(plan(seed, count, **drawn)) if _name(i) in advised and not w.has_fault]
+    batch = [(i, w) for i, w in enumerate(plan(seed, count, **drawn)) if name_of(i) in advised and not w.has_fault]
     if not batch:
         raise ValueError(f"{reports}: expected a report with a tie that a motion decides, found none")
     cases, sealed = Path(out) / "cases", Path(sealed)
@@ -112,7 +112,3 @@ def _payload(add: dict[str, float]) -> dict[str, float]:
 def _alone(rig: Rig) -> Rig:
     """The rig's last experiment in lanes of its own, as long as it is."""
     return replace(rig, experiments=(rig.experiments[-1],) * len(rig.experiments))
-
-
-def _name(index: int) -> str:
-    return f"case-{index + 1:03d}"

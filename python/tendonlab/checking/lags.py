@@ -179,8 +179,7 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
     beyond what it lowers that of the others: friction that the simulator lacks helps all of them."""
     saved = np.zeros(len(equation.dataset.experiments))
     for k, name in enumerate(equation.moved):
-        speed = logs.moving[name][1]
-        columns = np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300)], axis=1)
+        columns = _sliding(logs.moving[name][1])
         for i in range(len(saved)):
             here = logs.run == i
             saved[i] += _saved(left[k, here], columns[here])
@@ -188,15 +187,19 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
 
 
 def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int) -> float:
-    """The same of one experiment in presliding: while a motion is too small to slide, friction is a spring, and torque
-    seems late."""
+    """By how much friction in presliding lowers the surprise of an experiment: while a motion is too small to slide,
+    friction is a spring, and the motion seems to lead."""
     here, saved = logs.run == experiment, 0.0
     for k, name in enumerate(equation.moved):
         position, speed = logs.moving[name][:2, here]
         for deflection in _deflections(position):
-            columns = np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300), deflection], axis=1)
-            saved = max(saved, _saved(left[k, here], columns))
+            saved = max(saved, _saved(left[k, here], np.column_stack([_sliding(speed), deflection])))
     return saved
+
+
+def _sliding(speed: np.ndarray) -> np.ndarray:
+    """Dry and viscous friction (samples, 2), each of its own size."""
+    return np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300)], axis=1)
 
 
 def _deflections(position: np.ndarray) -> np.ndarray:

@@ -24,6 +24,7 @@ ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer
 STIFFER = 4  # times the attempts of the simulator itself, where that is more
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
+UNSEEN = 0.05  # s: no sensor or actuator is later
 START = 0.2  # s of an experiment from which its initial state is estimated
 
 
@@ -223,11 +224,20 @@ def make_case(
     system = dataset.system() if system is None else require_system(system)
     experiments = dataset.experiments if experiments is None else experiments
     replay = choose_replay(dataset, system)
-    prepared = tuple(prepare(e, system, replay) for e in experiments)
+    prepared = tuple(_judged(prepare(e, system, replay), e) for e in experiments)
     noise = sensor_noise(dataset, system, prepared)
     known = scales(system, prepared)
     case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
     return case if tolerance else fine_enough(case, noise)
+
+
+def _judged(ready: Prepared, experiment: Experiment) -> Prepared:
+    """The experiment without its first 50 ms where it begins in motion: what a late sensor shows there, or a late
+    actuator does, was never logged."""
+    if not any(ready.core.velocity):
+        return ready
+    seen = experiment.time - experiment.time[0] >= UNSEEN
+    return replace(ready, measured=np.where(seen, ready.measured, np.nan))
 
 
 def fine_enough(case: Case, noise: np.ndarray) -> Case:

@@ -26,7 +26,6 @@ _PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "bowden": "Bowden", "ar
 _RATES = {"velocity": 1, "speed": 1, "acceleration": 2}
 _DECISIVE = 100.0  # nats: whatever lies beyond decides as surely
 _IN_CODE = frozenset("_.:")
-_PORTS = {("cable_joint", "gear"): "gear input"}  # whose motion is that of one side
 _COORDINATES = {"time": "s", "t": "s", "frequency": "Hz", "temperature": "degC"}
 
 
@@ -51,7 +50,7 @@ def coordinate_words(name: str, kind: str) -> str:
     if port not in own:
         return words(name)
     number = [part for part in port.split("_") if part.isdigit()] if port != own[port] else []
-    noun = _PORTS.get((kind, port)) or element_words(own[port], kind)
+    noun = element_words(own[port], kind)
     return " ".join([noun.removesuffix("s") if number else noun, *number, quantity])
 
 

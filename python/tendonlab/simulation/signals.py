@@ -8,6 +8,7 @@ import numpy as np
 
 from tendonlab import _core
 
+CLEAR = 4.0  # sd from 0 of a velocity or a curvature that is there
 ROUNDING = 1e-9  # of its range: a signal with less noise was computed, not measured
 
 
@@ -49,18 +50,29 @@ def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
 
 
 def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Position and velocity at the first sample, from a line through the first 20 ms (at least 8 samples). A velocity
-    within its uncertainty, or below 1 % of the record's typical speed, is rest."""
+    """Position and velocity at the first sample, from a line through the first 20 ms (at least 8 samples), or from a
+    parabola where the motion is clearly curved there. A velocity within its uncertainty, or below 1 % of the record's
+    typical speed, is rest."""
     kept = np.isfinite(values)
     t, y = time[kept] - time[0], values[kept]
     num = max(8, int(np.searchsorted(t, 0.02)))
-    line, covariance = (
-        np.polyfit(t[:num], y[:num], 1, cov=True) if len(t) > num > 3 else (np.array([0.0, y[0]]), np.eye(2))
-    )
-    speed = float(np.ptp(y)) / max(float(t[-1]), 1e-12)
-    if abs(line[0]) < max(4.0 * float(np.sqrt(covariance[0, 0])), 0.01 * speed):
+    if len(t) <= num:
         return float(np.mean(y[:num])), 0.0
-    return float(line[1]), float(line[0])
+    (position, rate, bend), sd = _polynomial(t[:num], y[:num], 2)
+    still = position
+    if abs(bend) < CLEAR * sd[2]:
+        (position, rate), sd = _polynomial(t[:num], y[:num], 1)
+        still = np.mean(y[:num])
+    speed = float(np.ptp(y)) / max(float(t[-1]), 1e-12)
+    if abs(rate) < max(CLEAR * sd[1], 0.01 * speed):
+        return float(still), 0.0
+    return float(position), float(rate)
+
+
+def _polynomial(t: np.ndarray, y: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients of the best polynomial, the constant first, and the sd of each."""
+    found, covariance = np.polyfit(t, y, degree, cov=True)
+    return found[::-1], np.sqrt(np.diag(covariance))[::-1]
 
 
 def scales_of(time: np.ndarray, positions: np.ndarray) -> tuple[float, float]:
