@@ -65,8 +65,10 @@ def test_the_gap_lists_floor_and_error_of_each_stage() -> None:
 
 def test_an_effect_is_invisible_that_neither_gains_nor_could_gain_a_nat() -> None:
     seen = [
-        SimpleNamespace(effect=name, visibility=visibility, gain=gain)
-        for name, visibility, gain in [("dim", 0.9, 0.5), ("seen", 1.1, 0.0), ("gains", 0.0, 1.1), ("chosen", 0.1, 0.1)]
+        SimpleNamespace(effect=name, visibility=visibility, gain=gain, simulated=name != "never ran")
+        for name, visibility, gain in [
+            ("dim", 0.9, 0.5), ("seen", 1.1, 0.0), ("gains", 0.0, 1.1), ("chosen", 0.1, 0.1), ("never ran", 0.0, 0.0)
+        ]  # fmt: skip
     ]
     search: Any = SimpleNamespace(rounds=[SimpleNamespace(screened=seen)], selected=("chosen",))
     assert _invisible(search) == ("dim",)

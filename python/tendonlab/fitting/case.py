@@ -21,7 +21,8 @@ from tendonlab.simulation.system import System, require_system
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
-STIFFER = 4  # times the attempts of the simulator itself, where that is more
+STIFFER = 10  # times the attempts of the simulator itself, where that is more; with derivatives it may need four times
+PATIENT = 300_000  # attempts that no simulator needs in an experiment, unless it is hopeless
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
@@ -263,9 +264,10 @@ def fine_enough(case: Case, noise: np.ndarray) -> Case:
 
 
 def _at(case: Case, tolerance: float) -> Case:
-    """The case at this tolerance, with the attempts that its own simulator needs there."""
-    case = replace(case, tolerance=tolerance)
-    return replace(case, num_attempts=max(case.run(i, case.system)["attempts"] for i in case.train[:3]))
+    """The case at this tolerance, with the attempts that its own simulator needs there in any training experiment: one
+    whose logged inputs are noisy may need many times those of another."""
+    patient = replace(case, tolerance=tolerance, num_attempts=PATIENT)
+    return replace(patient, num_attempts=max(patient.run(i, case.system)["attempts"] for i in case.train))
 
 
 def _finest(case: Case) -> tuple[float, list[np.ndarray]]:

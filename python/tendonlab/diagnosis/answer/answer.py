@@ -159,10 +159,10 @@ def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> dict[str
 
 
 def _invisible(search: Search) -> tuple[str, ...]:
+    """Effects that leave no trace in these data; of one that could not be simulated nothing is known."""
     screened = search.rounds[0].screened if search.rounds else ()
-    return tuple(
-        s.effect for s in screened if max(s.visibility, s.gain) < INVISIBLE and s.effect not in search.selected
-    )
+    faint = (s for s in screened if s.simulated and max(s.visibility, s.gain) < INVISIBLE)
+    return tuple(s.effect for s in faint if s.effect not in search.selected)
 
 
 def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
