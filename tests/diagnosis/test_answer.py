@@ -36,14 +36,14 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
     final = SimpleNamespace(mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
     search: Any = SimpleNamespace(tuned=tuned, final=final, selected=("x",), fitter=fitter)
-    found = _levels(search, nominal, stages, floor, None)
+    found = _levels(search, nominal, stages, stages, floor, None)
     assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
     assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
     assert found.explained == pytest.approx(5.0 / 8.0)
     assert found.whitened == 1.04
     assert (found.trained, found.followed, found.scattered) == ((1.0, 0.0, 0.0) if repeated else (10.0, 0.25, 0.0))
     search.selected, search.final = (), tuned
-    none = _levels(search, nominal, stages, floor, Drift("joint", -0.1, 0.001))
+    none = _levels(search, nominal, stages, stages, floor, Drift("joint", -0.1, 0.001))
     assert (found.drifted, none.drifted) == (1.0, 0.001)
     assert none.explained is None
     assert (none.trained, none.followed, none.scattered) == ((1.0, 0.0, 0.0) if repeated else (20.0, 0.25, 3.0))
@@ -67,8 +67,12 @@ def test_an_effect_is_invisible_that_neither_gains_nor_could_gain_a_nat() -> Non
     seen = [
         SimpleNamespace(effect=name, visibility=visibility, gain=gain, simulated=name != "never ran")
         for name, visibility, gain in [
-            ("dim", 0.9, 0.5), ("seen", 1.1, 0.0), ("gains", 0.0, 1.1), ("chosen", 0.1, 0.1), ("never ran", 0.0, 0.0)
-        ]  # fmt: skip
+            ("dim", 0.9, 0.5),
+            ("seen", 1.1, 0.0),
+            ("gains", 0.0, 1.1),
+            ("chosen", 0.1, 0.1),
+            ("never ran", 0.0, 0.0),
+        ]
     ]
     search: Any = SimpleNamespace(rounds=[SimpleNamespace(screened=seen)], selected=("chosen",))
     assert _invisible(search) == ("dim",)

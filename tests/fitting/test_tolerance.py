@@ -86,8 +86,8 @@ def test_the_reference_is_a_hundredth_of_the_finest_or_what_the_inputs_allow(mon
     assert tried == pytest.approx([TOLERANCES[-1] / 100, TOLERANCES[-1] / 10, TOLERANCES[-1]])
 
 
-@pytest.mark.parametrize(("needed", "allowed"), [(0, 13_000), (3_000, 13_000), (5_000, 20_000)])
-def test_a_stiff_simulator_may_take_four_times_the_attempts_that_it_needs(
+@pytest.mark.parametrize(("needed", "allowed"), [(0, 13_000), (1_000, 13_000), (5_000, 50_000)])
+def test_a_stiff_simulator_may_take_ten_times_the_attempts_that_it_needs(
     needed: int, allowed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cases._core, "Settings", SimpleNamespace)

@@ -10,6 +10,7 @@ import pandas as pd
 
 from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
+from tendonlab.diagnosis.answer.allowed import allowed
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.explore import explore
@@ -47,7 +48,11 @@ def answer(
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     drift = over_session(case, search.final)
     lone = None if search.selected else lone_run(case, search.tuned, floor)
-    levels = _levels(search, nominal, stages, floor, drift, lone)
+    near = {
+        stage: allowed(case, model, floor, stages[stage], judged)
+        for stage, model in (("refitted", search.path[0]), ("with_effect", search.path[-1]))
+    }
+    levels = _levels(search, nominal, stages, near, floor, drift, lone)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
     held_out = _per_experiment(case, stages, floor, judged)
@@ -106,6 +111,7 @@ def _levels(
     search: Search,
     nominal: Fitted,
     stages: dict[str, Replayed],
+    near: dict[str, Replayed],
     floor: Floor,
     drift: Drift | None,
     lone: Lone | None = None,
@@ -114,9 +120,9 @@ def _levels(
     levels = Levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
-        refitted=heldout.level(stages["refitted"], floor),
-        explained=heldout.explained(stages["refitted"], stages["with_effect"], floor) if search.selected else None,
-        left=heldout.level(stages["with_effect"], floor),
+        refitted=heldout.level(near["refitted"], floor),
+        explained=heldout.explained(stages["refitted"], near["with_effect"], floor) if search.selected else None,
+        left=heldout.level(near["with_effect"], floor),
         repeated=floor.repeated,
         whitened=final.mean_square,
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,

@@ -1,0 +1,68 @@
+"""Held-out experiments again, within what a fit knows and friction differs from run to run."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.answer.allowed import allowed
+from tendonlab.diagnosis.answer.heldout import Replayed, rms
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import white
+from tendonlab.fitting.problem import Fitter
+
+SCATTER = 0.02
+
+
+@pytest.fixture(scope="module")
+def known(twin_case: Any) -> tuple[Any, Fitted]:
+    """The bundled rig as if its simulator were right, with friction that differs from run to run, and the model fitted
+    to its training experiments."""
+    names = [p.name for p in twin_case.system.info.parameters]
+    friction = tuple(names.index(f"joint_{name}") for name in ("coulomb", "viscous"))
+    case = replace(twin_case, scatter=((friction, SCATTER),))
+    right = tuple(measured_as(case, i, 0.0) for i in range(len(case.experiments)))
+    case = replace(case, prepared=right)
+    return case, Fitter(case, white(case.noise), None).fit(case.system, solve=False)  # type: ignore[arg-type]
+
+
+def measured_as(case: Any, i: int, friction: float, system: Any = None) -> Any:
+    """Experiment i as the simulator gives it, its friction that many times e higher."""
+    own = [*case.prepared[i].initial_mean, friction]
+    measured = case.run(i, system or case.system, own)["outputs"]
+    return replace(case.prepared[i], measured=np.where(np.isfinite(case.prepared[i].measured), measured, np.nan))
+
+
+def again(case: Any, fitted: Fitted, ready: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Rms errors of a held-out experiment that is measured so: as the model foretells, and as it allows."""
+    i = case.test[0]
+    case = replace(case, prepared=tuple(ready if k == i else old for k, old in enumerate(case.prepared)))
+    start = tuple(case.prepared[i].initial_mean)
+    outputs = case.run(i, case.system)["outputs"]
+    of = Replayed((case.system,), (start,), (outputs - ready.measured,), (outputs,))
+    floor = white(case.noise)
+    return rms(of), rms(allowed(case, fitted, floor, of, [i]))
+
+
+def test_friction_that_differs_as_it_may_is_no_gap(known: Any) -> None:
+    case, fitted = known
+    before, after = again(case, fitted, measured_as(case, case.test[0], 1.5 * SCATTER))
+    seen = np.isfinite(before)
+    assert np.any(before[seen] > 2.0 * case.noise[seen])
+    assert np.all(after[seen] < 0.5 * case.noise[seen])
+
+
+def test_what_the_fit_rules_out_stays_a_gap(known: Any) -> None:
+    """A cable with another stiffness, which seven training experiments know: the eighth may move it a little."""
+    case, fitted = known
+    other = case.system.with_parameters({"cable_stiffness": 1.2 * case.system.parameters["cable_stiffness"]})
+    before, after = again(case, fitted, measured_as(case, case.test[0], 0.0, other))
+    seen = np.isfinite(before)
+    assert np.max(after[seen] / case.noise[seen]) > 0.6 * np.max(before[seen] / case.noise[seen]) > 10.0
+
+
+def test_an_experiment_at_the_floor_stays_as_it_is(known: Any) -> None:
+    case, fitted = known
+    before, after = again(case, fitted, measured_as(case, case.test[0], 0.0))
+    assert np.array_equal(before, after, equal_nan=True)
