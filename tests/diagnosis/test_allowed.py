@@ -42,7 +42,7 @@ def again(case: Any, fitted: Fitted, ready: Any) -> tuple[np.ndarray, np.ndarray
     outputs = case.run(i, case.system)["outputs"]
     of = Replayed((case.system,), (start,), (outputs - ready.measured,), (outputs,))
     floor = white(case.noise)
-    return rms(of), rms(allowed(case, fitted, floor, of, [i]))
+    return rms(of), rms(allowed(case, {"fitted": fitted}, floor, {"fitted": of}, [i])["fitted"])
 
 
 def test_friction_that_differs_as_it_may_is_no_gap(known: Any) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,13 +20,19 @@ Row = tuple[System, tuple[float, ...], np.ndarray, np.ndarray]  # system, initia
 PARTS = (1.0, 0.5, 0.25, 0.1)  # of a step that are tried
 
 
-def allowed(case: Case, fitted: Fitted, floor: Floor, of: Replayed, experiments: Sequence[int]) -> Replayed:
-    """The replay `of` a model on held-out experiments, each again with the parameters, the initial state and the
+def allowed(
+    case: Case, models: Mapping[str, Fitted], floor: Floor, stages: Mapping[str, Replayed], experiments: Sequence[int]
+) -> dict[str, Replayed]:
+    """The replays of these models on held-out experiments, each again with the parameters, the initial state and the
     friction that suit it best within what the fit knows of the parameters and friction differs from run to run.
 
     A held-out experiment may depend on what no training experiment told, as where it alone reaches a limit."""
     if not case.test:
-        return of
+        return {stage: stages[stage] for stage in models}
+    return {stage: _allowed(case, model, floor, stages[stage], experiments) for stage, model in models.items()}
+
+
+def _allowed(case: Case, fitted: Fitted, floor: Floor, of: Replayed, experiments: Sequence[int]) -> Replayed:
     as_foretold = zip(of.systems, of.initial, of.residuals, of.outputs, strict=True)
     rows = [_nearest(case, fitted, floor, i, row) for i, row in zip(experiments, as_foretold, strict=True)]
     return Replayed(*(tuple(part) for part in zip(*rows, strict=True)))

@@ -48,10 +48,7 @@ def answer(
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     drift = over_session(case, search.final)
     lone = None if search.selected else lone_run(case, search.tuned, floor)
-    near = {
-        stage: allowed(case, model, floor, stages[stage], judged)
-        for stage, model in (("refitted", search.path[0]), ("with_effect", search.path[-1]))
-    }
+    near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
     levels = _levels(search, nominal, stages, near, floor, drift, lone)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
