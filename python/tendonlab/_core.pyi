@@ -58,6 +58,7 @@ class OutputInfo:
     meaning: Final[str]
     dimension: Final[str]
     axis: Final[int | None]
+    held: Final[bool]
 
 class PortInfo:
     name: Final[str]
@@ -225,6 +226,7 @@ class Experiment:
         position: Sequence[float],
         velocity: Sequence[float],
         taken: Sequence[tuple[int, int, float]] = ...,
+        reading: Sequence[float] = ...,
     ) -> None: ...
     @property
     def time(self) -> list[float]: ...
@@ -232,7 +234,9 @@ class Experiment:
     def position(self) -> list[float]: ...
     @property
     def velocity(self) -> list[float]: ...
-    def started(self, position: Sequence[float], velocity: Sequence[float]) -> Experiment: ...
+    @property
+    def reading(self) -> list[float]: ...
+    def started(self, position: Sequence[float], velocity: Sequence[float], reading: Sequence[float]) -> Experiment: ...
     def until(self, samples: int) -> Experiment: ...
 
 class Settings:

@@ -50,6 +50,14 @@ def test_friction_that_follows_the_session_is_nothing_that_the_library_has(repea
     assert found.probability["unknown_effect"] > 0.5
 
 
+@pytest.mark.parametrize("repeated", [False, True])
+def test_an_effect_beside_friction_that_follows_the_session_is_not_the_whole_answer(repeated: bool) -> None:
+    rounds = (contest((), "a", a=0.99, none=0.01),)
+    near = Levels(nominal=1e4, tuned=9.0, refitted=9.0, explained=1.0, left=1.0, repeated=repeated)
+    assert decide(rounds, ("a",), near).verdict == "effect"
+    assert decide(rounds, ("a",), replace(near, drifted=0.1 * RARE)).verdict == "unknown_effect"
+
+
 @pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 3.0)])
 def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tuned: float, refitted: float) -> None:
     """A floor that is assumed, or from few repeats, may be too low: what tuning does not shrink is no parameter."""

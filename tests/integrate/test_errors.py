@@ -73,7 +73,7 @@ def test_experiment_of_another_system():
     ("seed", "message"),
     [
         (("parameter", 999), f"parameter 999: rigid_joint has {len(SYSTEM.info.parameters)}"),
-        (("position", 1), "degree of freedom 1: rigid_joint has 1"),
+        (("position", 1), "initial state 1: rigid_joint has 1"),
     ],
 )
 def test_derivative_by_what_is_not_there(seed, message):

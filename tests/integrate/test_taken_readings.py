@@ -69,7 +69,7 @@ def test_many_begin_where_one_begins() -> None:
 
 def test_a_copy_begins_there_too() -> None:
     of = experiment(0.3, [(0, 0, 1.0)])
-    for copy in (pickle.loads(pickle.dumps(of)), of.started([0.3], [0.2])):
+    for copy in (pickle.loads(pickle.dumps(of)), of.started([0.3], [0.2], of.reading)):
         np.testing.assert_array_equal(run(BIASED, copy)["outputs"], run(BIASED, of)["outputs"])
 
 

@@ -17,7 +17,7 @@ def law(rise: float, share: float = 1.0) -> _core.Law:
 def output(one: _core.Law, effort: np.ndarray) -> np.ndarray:
     """The output under an effort that no other friction acts on."""
     time = np.arange(effort.size) * 1e-3
-    return np.asarray(one.apply(effort, frictionless=effort, smooth=effort, dry_level=LEVEL, time=time))
+    return np.asarray(one.apply(effort, start=effort, smooth=effort, dry_level=LEVEL, time=time))
 
 
 def play(effort: np.ndarray) -> np.ndarray:

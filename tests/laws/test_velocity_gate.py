@@ -26,7 +26,7 @@ def test_at_the_threshold_half_of_each_step_passes() -> None:
 def test_it_holds_well_below_the_threshold_and_follows_well_above_it() -> None:
     signal = np.array([2.0, 5.0, -3.0])
     np.testing.assert_allclose(output(law(), signal, 0.5), signal, rtol=1e-14)
-    np.testing.assert_allclose(output(law(), signal, 0.0, frictionless=1.0), 1.0, atol=1e-3)
+    np.testing.assert_allclose(output(law(), signal, 0.0, start=1.0), 1.0, atol=1e-3)
 
 
 def test_a_log_at_another_rate_means_the_same() -> None:

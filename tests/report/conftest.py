@@ -57,10 +57,11 @@ def where_map() -> WhereMap:
     refitted[empty] = with_effect[empty] = np.nan
     return WhereMap(
         element="joint",
-        x="joint_velocity",
+        place="joint",
+        x="joint velocity",
         x_unit="rad/s",
         x_edges=x,
-        y="joint_angle",
+        y="joint position",
         y_unit="rad",
         y_edges=y,
         refitted=refitted,

@@ -176,7 +176,7 @@ def test_what_is_ruled_out_is_not_drawn(with_effect: Diagnosis) -> None:
 
 def test_the_likeliest_elements_have_their_maps_drawn(with_effect: Diagnosis) -> None:
     (joint,) = with_effect.where_map
-    maps = tuple(replace(joint, element=name) for name in ("motor", "contact", "joint"))
+    maps = tuple(replace(joint, element=name, place=name) for name in ("motor", "contact", "joint"))
     drawn = draw_all(replace(with_effect, where_map=maps))["where"].svg
     assert drawn.index("Joint, refitted") < drawn.index("Contact, refitted")
     assert "Motor, refitted" not in drawn

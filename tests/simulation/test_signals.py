@@ -67,6 +67,7 @@ def test_white_noise_is_seen_beneath_smooth_motion() -> None:
 def start(**more: object) -> Start:
     """A measured motor that drives a joint, which was not measured."""
     given = {"follows": (0, 0, None), "motion": {0: (0.4, 2.0, 3.0)}, "sensor": {0: 1}, "position": {}, "velocity": {}}
+    given |= {"reading": (), "reading_sd": {}}
     return Start(**{**given, **more})  # type: ignore[arg-type]
 
 

@@ -20,7 +20,11 @@ std::vector<integrate::Seed> make_seeds(const std::vector<std::pair<std::string,
   using Of = integrate::Seed::Of;
   std::vector<integrate::Seed> all;
   for (const auto& [of, index] : seeds)
-    all.push_back({of == "parameter" ? Of::parameter : of == "position" ? Of::position : Of::velocity, index});
+    all.push_back({of == "parameter"  ? Of::parameter
+                   : of == "position" ? Of::position
+                   : of == "velocity" ? Of::velocity
+                                      : Of::reading,
+                   index});
   return all;
 }
 }  // namespace tendonlab::bindings

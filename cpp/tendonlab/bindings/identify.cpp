@@ -189,7 +189,8 @@ void bind_problem(py::module_& module) {
   py::class_<Task>(
       module, "Task",
       "One experiment of a fit: fixed {parameter index: value there}, added {parameter index: by how much it is\n"
-      "larger there}; initial: free states [(\"position\" | \"velocity\", axis)], initial_sd: their prior standard\n"
+      "larger there}; initial: free states [(\"position\" | \"velocity\", axis) | (\"reading\", output)], initial_sd: "
+      "their prior standard\n"
       "deviations about the experiment's own initial state; scatter [([parameter indices], sd)]: parameters that\n"
       "differ there by a common factor, sd of its logarithm.")
       .def(py::init(&make_task), py::arg("experiment"), py::arg("whitening"), py::kw_only(),

@@ -45,7 +45,7 @@ Loop make_loop(const std::string& kind, int axis, int output, double proportiona
 
 Experiment make_experiment(const std::string& kind, std::vector<double> time, std::vector<Signal> inputs,
                            const Loop& loop, std::vector<double> position, std::vector<double> velocity,
-                           const ReadingRows& taken) {
+                           const ReadingRows& taken, std::vector<double> reading) {
   const SystemInfo& info = model(kind).info();
   const auto dof = static_cast<std::size_t>(info.dof);
   if (time.size() < 2) throw ParameterError(sentence("experiment with ", time.size(), " samples: expected at least 2"));
@@ -61,7 +61,21 @@ Experiment make_experiment(const std::string& kind, std::vector<double> time, st
         !std::isfinite(share))
       throw ParameterError(sentence("taken = (", axis, ", ", output, ", ", share, "): expected one of ", info.dof,
                                     " degrees of freedom, one of ", info.outputs.size(), " outputs, a finite share"));
-  return {std::move(time), std::move(inputs), loop, std::move(position), std::move(velocity), to_readings(taken)};
+  if (reading.empty()) reading.assign(info.outputs.size(), std::nan(""));
+  if (reading.size() != info.outputs.size())
+    throw ParameterError(sentence(reading.size(), " readings: ", kind, " expects ", info.outputs.size()));
+  return {std::move(time),    std::move(inputs), loop, std::move(position), std::move(velocity),
+          to_readings(taken), std::move(reading)};
+}
+
+Experiment started(Experiment of, std::vector<double> position, std::vector<double> velocity,
+                   std::vector<double> reading) {
+  if (position.size() != of.position.size() || velocity.size() != of.velocity.size() ||
+      reading.size() != of.reading.size())
+    throw ParameterError(sentence("initial state: expected ", of.position.size(), " positions, as many velocities and ",
+                                  of.reading.size(), " readings"));
+  of.position = std::move(position), of.velocity = std::move(velocity), of.reading = std::move(reading);
+  return of;
 }
 
 py::dict simulate(const std::string& kind, const std::vector<double>& values, const std::vector<bool>& active,
@@ -160,19 +174,12 @@ void bind_experiments(py::module_& module) {
       .def(pickled_experiment())
       .def(py::init(&make_experiment), py::kw_only(), py::arg("kind"), py::arg("time"), py::arg("inputs"),
            py::arg("loop"), py::arg("position"), py::arg("velocity"), py::arg("taken") = ReadingRows(),
+           py::arg("reading") = std::vector<double>(),
            "`taken`: (degree of freedom, output, share) of initial positions that are a share of what a sensor reads;\n"
-           "the simulation begins there less that share of what the sensor adds.")
-      .def(
-          "started",
-          [](const Experiment& of, std::vector<double> position, std::vector<double> velocity) {
-            if (position.size() != of.position.size() || velocity.size() != of.velocity.size())
-              throw ParameterError(
-                  sentence("initial state: expected ", of.position.size(), " positions and as many velocities"));
-            Experiment other = of;
-            other.position = std::move(position), other.velocity = std::move(velocity);
-            return other;
-          },
-          py::arg("position"), py::arg("velocity"), "The same experiment from another initial state.")
+           "the simulation begins there less that share of what the sensor adds. `reading`: of the sensor of each\n"
+           "output before the first sample, NaN where it is not known (default).")
+      .def("started", &started, py::arg("position"), py::arg("velocity"), py::arg("reading"),
+           "The same experiment from another initial state.")
       .def(
           "until",
           [](const Experiment& of, std::size_t samples) {
@@ -185,7 +192,8 @@ void bind_experiments(py::module_& module) {
           py::arg("samples"), "The first samples of the experiment.")
       .def_readonly("time", &Experiment::time)
       .def_readonly("position", &Experiment::position)
-      .def_readonly("velocity", &Experiment::velocity);
+      .def_readonly("velocity", &Experiment::velocity)
+      .def_readonly("reading", &Experiment::reading);
   py::class_<integrate::Settings>(module, "Settings", "Tolerance and scales of the integration.")
       .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts,
                        const std::vector<std::string>& ports, const std::optional<std::vector<unsigned>>& outputs) {

@@ -32,7 +32,7 @@ void bind_signals(py::module_& module) {
       {field("name", &Input::name, "Name of the signal."), field("meaning", &Input::meaning, "What it is."),
        field("dimension", &Input::dimension, "Name of its dimension."),
        field("required", &Input::is_required, "Must it be logged?"),
-       field("between", &Input::between, "Between its samples: \"hold\", \"linear\" or \"smooth\"."),
+       field("between", &Input::between, "Between its samples: \"hold\", \"linear\", \"smooth\" or \"sloped\"."),
        field("replaced_by", &Input::replacement, "Input that takes its place where that one is logged.", ""),
        field("warn_if_absent", &Input::warns_if_absent,
              "Optional, but warn that it is taken as 0 where a measured output depends on it."),
@@ -41,7 +41,8 @@ void bind_signals(py::module_& module) {
       module, "OutputInfo", "An output of a system.",
       {field("name", &Output::name, "Name of the signal."), field("meaning", &Output::meaning, "What it is."),
        field("dimension", &Output::dimension, "Name of its dimension."),
-       field("axis", &Output::axis, "Degree of freedom whose position it is, None for anything else.", -1)});
+       field("axis", &Output::axis, "Degree of freedom whose position it is, None for anything else.", -1),
+       field("held", &Output::is_held, "May the system hold it from before the first sample?")});
 }
 
 void bind_places(py::module_& module) {

@@ -27,9 +27,10 @@ void require_sound(const Problem& problem, const Task& task) {
     }
   for (const FreeState& state : task.initial) {
     require_within("sd of an initial state", state.sd, 1e-300, 1e300);
-    if (state.seed.of == Of::parameter || state.seed.index < 0 || state.seed.index >= info.dof)
-      throw ParameterError(sentence("initial state ", state.seed.index, ": expected a position or velocity of one of ",
-                                    info.dof, " degrees of freedom"));
+    const auto count = state.seed.of == Of::parameter ? 0 : numbers_of(state.seed.of, *task.experiment).size();
+    if (state.seed.index < 0 || static_cast<std::size_t>(state.seed.index) >= count)
+      throw ParameterError(sentence("initial state ", state.seed.index, ": expected one of ", count,
+                                    ", a position, a velocity or a reading"));
   }
   for (const Scatter& group : task.scatter) {
     require_within("sd of scatter", group.sd, 1e-300, 10.0);
@@ -44,7 +45,7 @@ bool fixes(const Task& task, std::size_t index) {
   return false;
 }
 double& component(integrate::Experiment& of, const integrate::Seed& seed) {
-  return (seed.of == Of::position ? of.position : of.velocity)[static_cast<std::size_t>(seed.index)];
+  return numbers_of(seed.of, of)[static_cast<std::size_t>(seed.index)];
 }
 }  // namespace
 
@@ -77,8 +78,7 @@ Eigen::Index Prediction::column(std::size_t parameter) const {
 double Prediction::prior_mean(std::size_t own) const {
   if (own >= task.initial.size()) return 0.0;
   const integrate::Seed& seed = task.initial[own].seed;
-  const auto& from = seed.of == Of::position ? task.experiment->position : task.experiment->velocity;
-  return from[static_cast<std::size_t>(seed.index)];
+  return numbers_of(seed.of, *task.experiment)[static_cast<std::size_t>(seed.index)];
 }
 double Prediction::prior_sd(std::size_t own) const {
   return own < task.initial.size() ? task.initial[own].sd : task.scatter[own - task.initial.size()].sd;

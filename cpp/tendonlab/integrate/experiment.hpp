@@ -40,14 +40,20 @@ struct Experiment {
   Loop loop;
   std::vector<double> position, velocity;  ///< initial state, one number per degree of freedom
   std::vector<TakenReading> taken;         ///< positions that are not yet freed of the bias of their sensors
+  std::vector<double> reading;             ///< of the sensor of each output before the first sample; NaN: not known
 };
 
 /// A number by which outputs are differentiated: a parameter or part of the initial state. Seed k gives column k of the
 /// gradient.
 struct Seed {
-  enum class Of { parameter, position, velocity } of = Of::parameter;
+  enum class Of { parameter, position, velocity, reading } of = Of::parameter;
   int index = 0;
 };
+/// The numbers of the initial state that a seed is one of.
+template <class Begun>
+auto& numbers_of(Seed::Of of, Begun& from) {
+  return of == Seed::Of::position ? from.position : of == Seed::Of::velocity ? from.velocity : from.reading;
+}
 
 /// Which quantities of ports are recorded.
 struct PortRows {

@@ -1,5 +1,7 @@
 #pragma once
 // Runs a sampled system through the samples of an experiment: no step, no event. Knows no physics.
+#include <optional>
+
 #include "tendonlab/integrate/experiment.hpp"
 #include "tendonlab/integrate/rate.hpp"
 #include "tendonlab/systems/sampled.hpp"
@@ -9,7 +11,8 @@ namespace tendonlab::integrate {
 template <class T>
 class SampleInputs {
  public:
-  explicit SampleInputs(const Experiment& of) : from(of), piece(of.inputs.size()) {}
+  SampleInputs(const Experiment& of, const std::vector<T>& outputs_before)
+      : from(of), began(outputs_before), piece(of.inputs.size()) {}
   void move_to(std::size_t sample) {
     now = from.time[sample];
     dt = sample > 0 ? now - from.time[sample - 1] : 0.0;
@@ -28,10 +31,16 @@ class SampleInputs {
   bool given() const {
     return !from.inputs[k].empty();
   }
+  /// Output c before the first sample, where it is known.
+  template <std::size_t c>
+  std::optional<T> before() const {
+    return std::isfinite(plain(began[c])) ? std::optional(began[c]) : std::nullopt;
+  }
   double now = 0, dt = 0;
 
  private:
   const Experiment& from;
+  const std::vector<T>& began;
   mutable std::vector<int> piece;
 };
 
@@ -40,12 +49,14 @@ class Sampling {
   static constexpr std::size_t channels = System::outputs.size(), ports = System::ports.size();
 
  public:
-  /// Writes outputs, their derivatives in `columns` columns from the first, and what the ports saw.
-  Sampling(const System& of, const Experiment& experiment, Trajectory& into, int first_column, int columns,
-           const PortRows& shown, std::uint32_t outputs)
+  /// Writes outputs, their derivatives in `columns` columns from the first, and what the ports saw. `before`: what the
+  /// sensors read before the first sample.
+  Sampling(const System& of, const Experiment& experiment, std::vector<T> before, Trajectory& into, int first_column,
+           int columns, const PortRows& shown, std::uint32_t outputs)
       : system(of), time(experiment.time), out(into), column(first_column), width(columns) {
     std::vector<std::array<T, channels>> all(time.size());
-    SampleInputs<T> inputs(experiment);
+    for (std::size_t c = 0; c < channels; ++c) before[c] = before[c] - system.sensor[c].bias();
+    SampleInputs<T> inputs(experiment, before);
     systems::Memory<T, static_cast<std::size_t>(memories<System>), typename System::Carried> memory;
     for (std::size_t k = 0; k < time.size(); ++k) {
       inputs.move_to(k);

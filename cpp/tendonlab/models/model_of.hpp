@@ -102,9 +102,11 @@ class ModelOf final : public Model {
     if (!System::sampled) index("loop: axis", static_cast<std::size_t>(experiment.loop.axis), stated);
     index("loop: output", static_cast<std::size_t>(experiment.loop.output), System::outputs.size());
     for (const auto& seed : seeds)
-      index(seed.of == integrate::Seed::Of::parameter ? "derivative by parameter" : "derivative by degree of freedom",
-            static_cast<std::size_t>(seed.index),
-            seed.of == integrate::Seed::Of::parameter ? description.info.parameters.size() : stated);
+      if (seed.of == integrate::Seed::Of::parameter)
+        index("derivative by parameter", static_cast<std::size_t>(seed.index), description.info.parameters.size());
+      else
+        index("derivative by initial state", static_cast<std::size_t>(seed.index),
+              numbers_of(seed.of, experiment).size());
   }
 
   const Description description = systems::describe<Of<double>>();

@@ -117,8 +117,9 @@ void run(const Job& job) {
   using System = Of<T>;
   const System system = assemble<System, T>(job);
   if constexpr (System::sampled)
-    integrate::Sampling<System, T>(system, job.experiment, job.out, static_cast<int>(job.first),
-                                   static_cast<int>(job.count), job.ports(), job.settings.outputs);
+    integrate::Sampling<System, T>(
+        system, job.experiment, job.seeded<T>(job.experiment.reading, integrate::Seed::Of::reading), job.out,
+        static_cast<int>(job.first), static_cast<int>(job.count), job.ports(), job.settings.outputs);
   else if constexpr (std::is_same_v<T, double>)
     step_through<Of, T>(system, system, job);
   else

@@ -6,9 +6,10 @@ namespace tendonlab::systems {
 ///   target = K_in tau_in - friction(v),   tau_out[k] = h target + (1 - h) tau_out[k-1]
 /// h: transmission::VelocityGate. K_in = r_out/r_in unless the sheath is bent unevenly. The sheath slides with the
 /// velocity of the drive, less the part that only stretches the cables (`cable:compliance`), and carries the torque of
-/// the output. The output before the first sample is K_in tau_in, the middle of the loop: 0 from rest. A bristle
-/// (`sheath:presliding`) replaces the gate by its share. Axial stiffness and length cancel out of the torque of cables
-/// that do not stretch.
+/// the output. The velocity is that of a smooth curve near its samples: under their noise the gate would chatter. The
+/// output before the first sample is the first one measured (S3 sec. 2.1); where none was, K_in tau_in, the middle of
+/// the loop: 0 from rest. A bristle (`sheath:presliding`) replaces the gate by its share. Axial stiffness and length
+/// cancel out of the torque of cables that do not stretch.
 ///
 /// Of a shape's curvature the torque sees two numbers up to order (mu theta)³: the wrap angle and the mean angle turned
 /// along the sheath, which `curvature_skew` states as the linear curvature that has it.
@@ -22,9 +23,9 @@ struct BowdenPair : SystemDefaults {
   static constexpr bool sampled = true, plain_names = true;
   static constexpr std::array ports{port("sheath"), port("cable")};
   static constexpr std::array inputs{
-      input("input_torque", Dimension::effort, Between::linear, "torque of the drive").required(),
-      input("input_velocity", Dimension::flow, Between::linear, "velocity of the drive").required()};
-  static constexpr std::array outputs{output("output_torque", Dimension::effort, "torque on the load")};
+      input("input_torque", Dimension::effort, Between::sloped, "torque of the drive").required(),
+      input("input_velocity", Dimension::flow, Between::smooth, "velocity of the drive").required()};
+  static constexpr std::array outputs{output("output_torque", Dimension::effort, "torque on the load").held()};
   static constexpr std::array places{Place{"actuation", "of the drive"}};
   static constexpr std::string_view passing = "sheath";
   static constexpr std::array<std::string_view, 1> structural{"sheath:velocity_gate"}, nominal{"sheath:capstan"};
@@ -41,7 +42,7 @@ struct BowdenPair : SystemDefaults {
   std::array<Chain<T, sensing::All>, 1> sensor;
   Chain<T, transmission::SheathEffort> passed;
   struct Carried {
-    T travel{};
+    T travel{}, velocity{};
     typename decltype(passed)::States states{};
   };
   T input_radius, output_radius, sheath_length, cable_stiffness, pretension, wrap_angle, curvature_skew;
@@ -70,12 +71,12 @@ struct BowdenPair : SystemDefaults {
     const DriveEffort effort{{in.template input<0>(), in.dt}, in.template slope<0>(), in.template slope<1>()};
     const PairSliding drive = at_drive(in.template input<1>(), effort);
     const T torque = actuation.pass(effort), velocity = std::get<1>(slot).moved(drive).velocity;
-    memory.own.travel = memory.own.travel + in.dt * velocity;
+    const T on_the_way = 0.5 * (velocity + memory.own.velocity);  // since the sample before
+    memory.own = {memory.own.travel + in.dt * on_the_way, velocity, memory.own.states};
     const SheathSliding at = at_sheath(velocity, memory.own.travel, torque);
-    memory.slot[0] = advanced(sheath, at, memory.slot[0], in.dt);
+    memory.slot[0] = advanced(sheath, at_sheath(on_the_way, at.position, torque), memory.slot[0], in.dt);
     const T friction = sheath.respond(at, memory.slot[0]).force;
-    return {
-        {passed.pass(transmitted(at, friction, in.dt), memory.own.states)}, {at, stretch(drive)}, {friction, torque}};
+    return {{passed.pass(transmitted(at, friction, in), memory.own.states)}, {at, stretch(drive)}, {friction, torque}};
   }
 
  private:
@@ -103,15 +104,17 @@ struct BowdenPair : SystemDefaults {
     return at;
   }
   /// The torque on the load, of `friction` at this sliding, before the laws that hold it.
-  TransmittedEffort transmitted(const SheathSliding& at, const T& friction, double dt) const {
+  template <class Inputs>
+  TransmittedEffort transmitted(const SheathSliding& at, const T& friction, const Inputs& in) const {
     const auto& sheath = std::get<0>(slot);
     const SheathSliding seen = sheath.moved(at);
-    TransmittedEffort of;
-    of.frictionless = at.load;
-    sheath.template each<role::gain>([&](const auto& law) { of.frictionless = law.gain(seen) * of.frictionless; });
+    T frictionless = at.load;
+    sheath.template each<role::gain>([&](const auto& law) { frictionless = law.gain(seen) * frictionless; });
     T smooth{};  // friction without memory and edge
     sheath.template each<role::force>([&](const auto& law) { smooth = smooth + law.force(seen); });
-    of.signal = of.frictionless - friction, of.dt = dt, of.smooth = of.frictionless - smooth;
+    TransmittedEffort of;
+    of.signal = frictionless - friction, of.dt = in.dt, of.smooth = frictionless - smooth;
+    of.start = in.template before<0>().value_or(frictionless);
     of.dry_level = sheath.dry_level(seen), of.bristle_share = 1.0 - sheath.left_to_slide(T(1.0));
     of.velocity = at.velocity;
     return of;

@@ -2,8 +2,9 @@
 // Systems without a differential equation: a sample follows from its inputs and from the memory. Instead of `couple`
 // and `observe` they state
 //   template <class Inputs, class Memory> Sample evaluate(const Inputs& in, Memory& memory) const;
-// with in.template input<k>(), slope<k>(), given<k>(), in.dt (s since the sample before, 0 at the first); memory.slot
-// holds the states of the slots' laws, memory.own what the system itself hands on (its `Carried`, empty at the first).
+// with in.template input<k>(), slope<k>(), given<k>(), before<c>() (output c before the first sample, if it is known)
+// and in.dt (s since the sample before, 0 at the first); memory.slot holds the states of the slots' laws, memory.own
+// what the system itself hands on (its `Carried`, empty at the first).
 #include "tendonlab/systems/system.hpp"
 
 namespace tendonlab::systems {

@@ -5,8 +5,9 @@
 #include "tendonlab/core/dimension.hpp"
 
 namespace tendonlab::systems {
-/// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated.
-enum class Between { hold, linear, smooth };
+/// What a logged input is between its samples: held, straight, or a smooth curve that may be differentiated, near its
+/// samples (smooth) or through them, with the slopes of the one near them (sloped).
+enum class Between { hold, linear, smooth, sloped };
 constexpr const char* word(Between between) {
   switch (between) {
     case Between::hold:
@@ -15,6 +16,8 @@ constexpr const char* word(Between between) {
       return "linear";
     case Between::smooth:
       return "smooth";
+    case Between::sloped:
+      return "sloped";
   }
   return nullptr;
 }
@@ -55,11 +58,17 @@ constexpr Input input(std::string_view name, Dimension dimension, Between betwee
 struct Output {
   std::string_view name, meaning;
   Dimension dimension;
-  int axis = -1;  ///< the degree of freedom whose position it is, -1 for anything else
+  int axis = -1;         ///< the degree of freedom whose position it is, -1 for anything else
+  bool is_held = false;  ///< the system may hold it from before the first sample: it is part of the initial state
 
   constexpr Output position_of(int degree_of_freedom) const {
     Output o = *this;
     o.axis = degree_of_freedom;
+    return o;
+  }
+  constexpr Output held() const {
+    Output o = *this;
+    o.is_held = true;
     return o;
   }
 };

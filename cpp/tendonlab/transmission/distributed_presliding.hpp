@@ -42,7 +42,7 @@ struct DistributedPresliding {
   };
   template <class S>
   State<S> next(State<S> before, const TransmittedEffort<S>& at) const {
-    if (at.dt == 0.0) before = {at.frictionless, at.frictionless};
+    if (at.dt == 0.0) before = {at.start, at.smooth};
     const double sense = plain(at.smooth) < plain(before.input) ? -1.0 : 1.0;
     const S friction = limited(S(before.input - before.held), at.dry_level);  // friction above the level has slipped
     const S turning = rise(S(sense * (at.smooth - before.input)), S(at.dry_level - sense * friction));

@@ -5,7 +5,7 @@ namespace tendonlab::transmission {
 /// What laws of the effort see that a transmission passes on. Its `signal` enters as the effort less all friction.
 template <class S>
 struct TransmittedEffort : Passing<S> {
-  S frictionless{};   ///< the effort without friction: the output before the first sample
+  S start{};          ///< what was transmitted before the first sample
   S smooth{};         ///< the effort without dry friction
   S dry_level{};      ///< dry friction, a magnitude
   S bristle_share{};  ///< share of the dry friction that a bristle takes over
@@ -15,7 +15,7 @@ struct TransmittedEffort : Passing<S> {
   static constexpr void for_each_field(F&& f) {
     Passing<S>::for_each_field(f);
     f(
-        "frictionless", sees_nothing, [](auto& at) -> auto& { return at.frictionless; });
+        "start", sees_nothing, [](auto& at) -> auto& { return at.start; });
     f(
         "smooth", sees_nothing, [](auto& at) -> auto& { return at.smooth; });
     f(

@@ -39,7 +39,7 @@ struct VelocityGate {
   State<S> next(const State<S>& before, const TransmittedEffort<S>& at) const {
     const bool first = at.dt == 0.0;
     const S held = (share * (1.0 - at.bristle_share)) * kept(at.velocity, first ? 1.0 : at.dt / period);
-    return {held * (first ? at.frictionless : before.output) + (1.0 - held) * at.signal};
+    return {held * (first ? at.start : before.output) + (1.0 - held) * at.signal};
   }
   template <class S>
   S apply(const TransmittedEffort<S>&, const State<S>& now) const {

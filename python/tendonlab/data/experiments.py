@@ -139,7 +139,8 @@ def _check_additions(table: Table, additions: Mapping[str, float], context: Cont
 
 def _check_initial(table: Table, initial: Mapping[str, float], info: SystemInfo) -> None:
     angles = [signal.name for signal in info.outputs if signal.dimension in ("displacement", "flow")]
-    states = list(dict.fromkeys([*angles, *(name.replace("_angle", "_velocity") for name in angles)]))
+    held = [signal.name for signal in info.outputs if signal.held]
+    states = list(dict.fromkeys([*angles, *(name.replace("_angle", "_velocity") for name in angles), *held]))
     for name in initial:
         if name not in states:
             raise table.error(name, f"{name!r} is no state of {info.kind}; {expected_one_of(name, states)}")

@@ -121,10 +121,10 @@ class Case:
     def started(self, i: int, own: Sequence[float]) -> _core.Experiment:
         """Experiment i from the initial state among its own unknowns."""
         core = self.prepared[i].core
-        position, velocity = list(core.position), list(core.velocity)
-        for (of, axis), value in zip(self.prepared[i].initial, own, strict=False):
-            (position if of == "position" else velocity)[axis] = value
-        return core.started(position, velocity)
+        begun = {"position": core.position, "velocity": core.velocity, "reading": core.reading}  # copies
+        for (of, index), value in zip(self.prepared[i].initial, own, strict=False):
+            begun[of][index] = value
+        return core.started(**begun)
 
     def run(
         self,

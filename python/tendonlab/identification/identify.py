@@ -189,7 +189,7 @@ def _result(problem: Problem, fit: Fitted) -> Identification:
         residuals=residuals,
         errors=_errors(case, residuals.values()),
         initial={
-            e.name: {f"{kind} of axis {j}": v for (kind, j), v in zip(e.initial, own, strict=True)}
+            e.name: {_state(case, *part): v for part, v in zip(e.initial, own, strict=True)}
             for e, own in zip(case.prepared, fit.initial, strict=True)
         },
         noise_sd=noise,
@@ -201,6 +201,11 @@ def _result(problem: Problem, fit: Fitted) -> Identification:
         warnings=case.dataset.warnings,
         problem=problem.at(system, fit.initial),
     )
+
+
+def _state(case: Case, of: str, index: int) -> str:
+    """A part of the initial state in words."""
+    return case.outputs[index] if of == "reading" else f"{of} of axis {index}"
 
 
 def _table(case: Case, fit: Fitted) -> pd.DataFrame:

@@ -90,7 +90,7 @@ class Overlay(EqualByFields):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WhereMap(EqualByFields):
-    """Where in motion (and position or load) the residual of one element lies.
+    """Where in motion (and position or load) of one port of an element its residual lies. `place`: the port in words.
 
     `x_edges` (nx + 1,) and `y_edges` (ny + 1,) bound the cells, in `x_unit` and `y_unit`; `refitted` and `with_effect`,
     shape (ny, nx), are RMS residuals over the noise floor, NaN in cells without data. Raises ParameterError on other
@@ -98,6 +98,7 @@ class WhereMap(EqualByFields):
     """
 
     element: str
+    place: str
     x: str
     x_unit: str
     x_edges: Floats
@@ -110,7 +111,7 @@ class WhereMap(EqualByFields):
     def __post_init__(self) -> None:
         shape = (len(self.y_edges) - 1, len(self.x_edges) - 1)
         for stage in ("refitted", "with_effect"):
-            _require_shape(f"where_map of {self.element}: {stage}", getattr(self, stage), shape)
+            _require_shape(f"where_map of {self.place}: {stage}", getattr(self, stage), shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -117,8 +117,9 @@ def _ties(diagnosis: Diagnosis) -> str:
 
 
 def _unknown(diagnosis: Diagnosis) -> str:
+    drift = _drift(diagnosis)
     if not diagnosis.selected:
-        return _nothing_found(diagnosis)
+        return drift or "A gap remains after tuning that no effect of the library explains."
     one = len(diagnosis.selected) == 1
     shares = [finding.probability for finding in diagnosis.effects if finding.name in diagnosis.selected]
     if max(shares, default=1.0) >= EVEN:
@@ -134,12 +135,13 @@ def _unknown(diagnosis: Diagnosis) -> str:
         share = f"but {'explains' if one else 'explain'} nothing of the excess error on held-out experiments"
     else:
         share = f"and {'explains' if one else 'explain'} {percent(diagnosis.explained)} of the excess error"
-    return f"The library explains only a part of the gap. {effects} {share}; {rest}."
+    return f"{drift or 'The library explains only a part of the gap.'} {effects} {share}; {rest}."
 
 
-def _nothing_found(diagnosis: Diagnosis) -> str:
+def _drift(diagnosis: Diagnosis) -> str:
+    """How friction changed over the session; empty where it did not."""
     drift = diagnosis.details.get("drift")
     if drift is None:
-        return "A gap remains after tuning that no effect of the library explains."
+        return ""
     change = changed_friction(drift["element"], drift["change"], diagnosis.system)
     return f"An effect is missing that the library lacks: {change} over the session."

@@ -46,12 +46,16 @@ def element_words(element: str, kind: str, *, article: bool = False) -> str:
 def coordinate_words(name: str, kind: str) -> str:
     """A coordinate of a port of the system `kind`: "stiction_2_velocity" of a cable_joint is "guide 2 velocity"."""
     port, _, quantity = name.rpartition("_")
-    own = {row.name: row.element for row in system_info(kind).ports} if kind in kinds() else {}
-    if port not in own:
-        return words(name)
-    number = [part for part in port.split("_") if part.isdigit()] if port != own[port] else []
-    noun = element_words(own[port], kind)
-    return " ".join([noun.removesuffix("s") if number else noun, *number, quantity])
+    is_port = kind in kinds() and port in (row.name for row in system_info(kind).ports)
+    return f"{port_words(port, kind)} {quantity}" if is_port else words(name)
+
+
+def port_words(port: str, kind: str) -> str:
+    """The noun of a port of the system `kind`: "stiction_2" of a cable_joint is "guide 2"."""
+    element = next(row.element for row in system_info(kind).ports if row.name == port)
+    number = [part for part in port.split("_") if part.isdigit()] if port != element else []
+    noun = element_words(element, kind)
+    return " ".join([noun.removesuffix("s") if number else noun, *number])
 
 
 def phrase(name: str, kind: str) -> str:

@@ -14,7 +14,7 @@ from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.command import fed_noise
 from tendonlab.simulation.records import Experiment
-from tendonlab.simulation.signals import averaged, hold, linear, scales_of, smooth, smoothed
+from tendonlab.simulation.signals import averaged, hold, linear, scales_of, sloped, smooth, smoothed
 from tendonlab.simulation.start import Start, start_of
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class Prepared:
     @property
     def initial_mean(self) -> np.ndarray:
         """Means of those parts of the initial state."""
-        start = {"position": self.core.position, "velocity": self.core.velocity}
+        start = {"position": self.core.position, "velocity": self.core.velocity, "reading": self.core.reading}
         return np.array([start[of][axis] for of, axis in self.initial])
 
     def settings(
@@ -123,6 +123,7 @@ def prepare(experiment: Experiment, system: Simulator, replay: Replay) -> Prepar
         position=position.tolist(),
         velocity=velocity.tolist(),
         taken=start.taken(shape),
+        reading=start.reading,
     )
     scale = scales_of(time, measured[[s.axis is not None for s in outputs]])
     return Prepared(
@@ -181,7 +182,7 @@ def _between(experiment: Experiment, given: InputInfo) -> Callable[[np.ndarray, 
         return averaged
     if is_held(experiment, given):
         return hold
-    return smoothed if given.between == "smooth" else linear
+    return {"smooth": smoothed, "sloped": sloped}.get(given.between, linear)
 
 
 def _require_time(experiment: Experiment) -> None:

@@ -41,12 +41,21 @@ def smooth(time: np.ndarray, values: np.ndarray) -> _core.Signal:
 def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation; through them where they
     carry no noise, which leaves nothing to choose by."""
-    from tendonlab.simulation.smoothing import smoothing_spline  # loads scipy
-
     kept = np.isfinite(values)
-    if is_noiseless(values):
-        return smooth(time[kept], values[kept])
-    return _from_pieces(smoothing_spline(time[kept], values[kept]))
+    return _from_pieces(_spline_near(time[kept], values[kept]))
+
+
+def sloped(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+    """A cubic through the samples that has there the slopes of `smoothed`: values as logged, slopes freed of noise."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    return _from_pieces(CubicHermiteSpline(time, values, _spline_near(time, values)(time, 1)))
+
+
+def first_samples(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The measured samples of the first 20 ms (at least 8 samples)."""
+    kept = np.isfinite(values)
+    return np.asarray(values[kept][: max(8, int(np.searchsorted(time[kept] - time[0], 0.02)))])
 
 
 def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
@@ -55,7 +64,7 @@ def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]
     typical speed, is rest."""
     kept = np.isfinite(values)
     t, y = time[kept] - time[0], values[kept]
-    num = max(8, int(np.searchsorted(t, 0.02)))
+    num = len(first_samples(time, values))
     if len(t) <= num:
         return float(np.mean(y[:num])), 0.0
     (position, rate, bend), sd = _polynomial(t[:num], y[:num], 2)
@@ -104,6 +113,14 @@ def white_noise_sd(values: np.ndarray) -> float:
         return 0.0
     weights = np.sqrt(70.0)  # root of the sum of squared binomials of the fourth difference
     return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
+
+
+def _spline_near(time: np.ndarray, values: np.ndarray) -> Any:
+    from scipy.interpolate import CubicSpline
+
+    from tendonlab.simulation.smoothing import smoothing_spline  # loads scipy
+
+    return CubicSpline(time, values) if is_noiseless(values) else smoothing_spline(time, values)
 
 
 def _from_pieces(piecewise: Any) -> _core.Signal:

@@ -9,20 +9,26 @@ import numpy as np
 
 from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.records import Experiment
-from tendonlab.simulation.signals import motion_at_start
+from tendonlab.simulation.signals import first_samples, motion_at_start
+
+REACH = 0.1  # of its range: prior sd of a measured part of the initial state that is no velocity
 
 
 @dataclass(frozen=True)
 class Start:
     """`follows`: for each degree of freedom the measured one that it moves with as if nothing stretched, itself where
     it was measured; None where nothing was. `motion`: position, velocity and travel of the measured ones. `position`
-    and `velocity`: what the experiment states. `sensor`: the output that tells each measured one."""
+    and `velocity`: what the experiment states. `sensor`: the output that tells each measured one. `reading`: what is
+    read before the first sample of each output that the system may hold, NaN where it is not known and for others;
+    `reading_sd`: of those that were measured."""
 
     follows: tuple[int | None, ...]
     motion: Mapping[int, tuple[float, float, float]]
     sensor: Mapping[int, int]
     position: Mapping[int, float]
     velocity: Mapping[int, float]
+    reading: tuple[float, ...]
+    reading_sd: Mapping[int, float]
 
     @property
     def is_rigid(self) -> bool:
@@ -48,7 +54,8 @@ class Start:
         ]
 
     def nuisances(self, shape: np.ndarray) -> tuple[tuple[tuple[str, int], ...], tuple[float, ...]]:
-        """What is neither stated nor at rest, as ("position" | "velocity", degree of freedom), and the sd of each."""
+        """What is neither stated nor at rest, as ("position" | "velocity", degree of freedom) or ("reading", output),
+        and the sd of each."""
         found: dict[tuple[str, int], float] = {}
         for j, known in enumerate(self.follows):
             if known is None:
@@ -56,9 +63,10 @@ class Start:
             share = float(self._share(shape, j, known))
             _, rate, reach = (share * part for part in self.motion[known])
             if j not in self.position and reach != 0:
-                found["position", j] = 0.1 * abs(reach)
+                found["position", j] = REACH * abs(reach)
             if j not in self.velocity and rate != 0:
                 found["velocity", j] = abs(rate)
+        found |= {("reading", c): sd for c, sd in self.reading_sd.items()}
         return tuple(found), tuple(found.values())
 
     def _share(self, shape: np.ndarray, j: int, known: int) -> np.ndarray:
@@ -76,6 +84,7 @@ def start_of(experiment: Experiment, info: SystemInfo, measured: np.ndarray) -> 
     first = next(iter(motion), None)
     position: dict[int, float] = {}
     velocity: dict[int, float] = {}
+    reading, reading_sd = _held(experiment, info, measured)
     for signal in info.outputs:
         if signal.axis is not None:
             rate = signal.name.removesuffix("_angle") + "_velocity"
@@ -83,4 +92,18 @@ def start_of(experiment: Experiment, info: SystemInfo, measured: np.ndarray) -> 
                 position.setdefault(signal.axis, experiment.initial[signal.name])
             if rate in experiment.initial:
                 velocity.setdefault(signal.axis, experiment.initial[rate])
-    return Start(tuple(j if j in motion else first for j in range(info.dof)), motion, sensor, position, velocity)
+    follows = tuple(j if j in motion else first for j in range(info.dof))
+    return Start(follows, motion, sensor, position, velocity, reading, reading_sd)
+
+
+def _held(experiment: Experiment, info: SystemInfo, measured: np.ndarray) -> tuple[tuple[float, ...], dict[int, float]]:
+    """What is read of held outputs before the first sample: what the experiment states, else the median of the first
+    samples, with its sd."""
+    reading = [experiment.initial.get(s.name, np.nan) if s.held else np.nan for s in info.outputs]
+    sd: dict[int, float] = {}
+    for c, (signal, y) in enumerate(zip(info.outputs, measured, strict=True)):
+        if signal.held and np.isnan(reading[c]) and np.isfinite(y).any():
+            reading[c] = float(np.median(first_samples(experiment.time, y)))
+            if (reach := float(np.nanmax(y) - np.nanmin(y))) > 0:
+                sd[c] = REACH * reach
+    return tuple(reading), sd

@@ -125,7 +125,7 @@ def _levels(
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
         followed=followed(case, final) if doubtful else 0.0,
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
-        drifted=drift.chance if drift and drift.tells and not search.selected else 1.0,
+        drifted=drift.chance if drift and drift.tells else 1.0,
     )
     return lone.left_out(levels, nominal) if lone else levels
 

@@ -34,9 +34,9 @@ class Levels:
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
-    run-to-run friction may leave, and `followed`: the share of that which follows the motion or drifts. Where nothing
-    was selected, `scattered`: by how much friction differs from run to run, where nothing repeats; and `drifted`: the
-    chance of a trend of friction over the session, 1 where there is none that matters."""
+    run-to-run friction may leave, and `followed`: the share of that which follows the motion or drifts; and, where
+    nothing was selected, `scattered`: by how much friction differs from run to run. `drifted`: the chance of a trend of
+    friction over the session, 1 where there is none that matters."""
 
     nominal: float
     tuned: float
@@ -77,7 +77,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     needed = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
-    spare = min(_noise_room(levels), max((levels.explained or 0.0) - needed, NO_GAP - levels.left))
+    whole = max((levels.explained or 0.0) - needed, NO_GAP - levels.left)
+    spare = min(_noise_room(levels), whole, _chance_room(levels))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
@@ -105,10 +106,15 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
 
 def _room(levels: Levels) -> float:
     """By how much an error may be noise; below 0 it is none."""
-    by_chance = SOFT * float(np.log(max(levels.drifted, 1e-9) / RARE))
+    common = min(FAR - levels.refitted, _chance_room(levels))
     if levels.repeated:
-        return min(NEAR_FLOOR - levels.tuned, FAR - levels.refitted, by_chance)
-    return min(SOFT, _noise_room(levels), FAR - levels.refitted, FAR_SCATTERED - levels.scattered, by_chance)
+        return min(NEAR_FLOOR - levels.tuned, common)
+    return min(SOFT, _noise_room(levels), FAR_SCATTERED - levels.scattered, common)
+
+
+def _chance_room(levels: Levels) -> float:
+    """By how much a trend of friction over the session may be chance; below 0 it is none."""
+    return SOFT * float(np.log(max(levels.drifted, 1e-9) / RARE))
 
 
 def _noise_room(levels: Levels) -> float:

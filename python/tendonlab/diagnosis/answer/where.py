@@ -11,6 +11,7 @@ from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import WhereMap
+from tendonlab.report.words import port_words
 from tendonlab.simulation.catalog import PortInfo, unit
 
 NUM_BINS, NUM_SHIFTS = 8, 400
@@ -130,13 +131,15 @@ def maps(
         if np.ptp(x) == 0 or np.ptp(y) == 0:
             continue
         x_edges, y_edges = _edges(x), _edges(y)
+        place = port_words(port.name, case.system.kind)
         found.append(
             WhereMap(
-                element=port.name,
-                x=f"{port.name}_velocity",
+                element=port.element,
+                place=place,
+                x=f"{place} velocity",
                 x_unit=unit("flow", axis),
                 x_edges=x_edges,
-                y=f"{port.name}_{quantity}",
+                y=f"{place} {quantity}",
                 y_unit=unit(dimension(port, quantity), axis),
                 y_edges=y_edges,
                 refitted=_cells(x, y, before, x_edges, y_edges),

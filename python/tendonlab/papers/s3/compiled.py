@@ -34,7 +34,8 @@ class CompiledRecord:
         """A record, prepared for repeated simulation."""
         system = bowden_pair(paper_parameters(), record=record)
         data = pd.DataFrame({"input_torque": record.log["tau_in"], "input_velocity": DEGREE * record.log["v"]})
-        ready = prepare(Experiment(name=record.name, data=data), system, Replay("free"))
+        as_read = dict.fromkeys(data.columns, True)  # S3 eq. 20 sees each sample of the velocity with its noise
+        ready = prepare(Experiment(name=record.name, data=data, holds=as_read), system, Replay("free"))
         order = [parameter.name for parameter in system.info.parameters]
         index = {name: order.index(own) for name, own in SYSTEM_NAMES.items()}
         return cls(system.values(), system.active(), ready.core, record.log["tau_out"].to_numpy(dtype=float), index)

@@ -9,7 +9,7 @@ import numpy as np
 from tendonlab.errors import ParameterError
 from tendonlab.report.numbers import number
 from tendonlab.report.plot.style import MUTED, label, new_axes
-from tendonlab.report.words import STAGES, capital, words
+from tendonlab.report.words import STAGES, capital
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,7 +65,7 @@ def _draw(ax: Axes, where: WhereMap, *, stage: str, scale: Normalize) -> QuadMes
     cells = np.ma.masked_invalid(getattr(where, stage))
     mesh = ax.pcolormesh(where.x_edges, where.y_edges, cells, norm=scale, cmap="cividis", lw=0, rasterized=True)
     ax.set(xlabel=label(where.x, where.x_unit), ylabel=label(where.y, where.y_unit))
-    ax.set_title(f"{capital(words(where.element))}, {STAGES[stage]}", loc="left")
+    ax.set_title(f"{capital(where.place)}, {STAGES[stage]}", loc="left")
     if where.x_edges[0] < 0 < where.x_edges[-1]:
         ax.axvline(0.0, color=MUTED, lw=0.6, ls=":")
     ax.spines[["top", "right"]].set_visible(False)
