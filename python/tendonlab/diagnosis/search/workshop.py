@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from tendonlab import _core
+from tendonlab.diagnosis.search.bristles import trouble_with_bristles
 from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
@@ -19,7 +20,7 @@ from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
 
 FAR_BEHIND = 0.1  # share of the most that another candidate promises, and of what the first one gains
-CLOSE = 0.1  # share of the best gain behind which a trial may only have ended in a worse optimum
+CLOSE = (0.1, 0.1, 0.01, 0.01, 0.001, 0.001)  # of the best gain: so far behind may be a worse optimum, by rounds
 SAME = 0.1  # nats that are no difference
 
 
@@ -85,16 +86,16 @@ class Workshop:
 
     def _levelled(self, fitter: Fitter, base: Fitted, trials: list[Trial]) -> list[Trial]:
         """The trials, those close behind the first also from where it ended, and the first from where they did."""
-        for _ in range(2):
+        for reach in CLOSE:
             if not trials:
                 break
             first, most = trials[0].fitted, trials[0].evidence_gain
-            close = [t for t in trials[1:] if SAME < most - t.evidence_gain < CLOSE * most]
+            close = [t for t in trials[1:] if SAME < most - t.evidence_gain < reach * most]
             fits = list(self.pool.map(partial(restarted, fitter, base, first), [t.fitted for t in close]))
             better = {
                 t.effect: Trial.of(t.effect, fit, base)
                 for t, fit in zip(close, fits, strict=True)
-                if fit is not t.fitted
+                if fit.counted().evidence > t.fitted.counted().evidence + SAME
             }
             if not better:
                 break
@@ -111,9 +112,10 @@ def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) ->
     try:
         started = candidate if candidate.far_behind else with_whole_shares(fitter, base, candidate)
         fit = refit(fitter, base, started, pace=pace)
+        trouble = trouble_with_bristles(fitter.case, fit, candidate.effect)
     except (NumericalError, ParameterError) as reason:
         return Failed(candidate.effect, str(reason))
-    return Trial.of(candidate.effect, fit, base)
+    return Failed(candidate.effect, trouble) if trouble else Trial.of(candidate.effect, fit, base)
 
 
 @contextmanager

@@ -1,0 +1,51 @@
+"""Bristles that slide before any sensor sees them bend: dry friction but for its creep.
+
+A bristle of LuGre creeps under every shake, however stiff it is. Where noise faster than the log shakes a rig, so that
+the rig creeps, very stiff bristles imitate that."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
+
+VISIBLE = 2.0  # times its noise, by which a sensor sees bristles bend
+UNSEEN = (
+    "its bristles slide before any sensor sees them bend (by {:.1g} of its noise), so only their creep tells, as that "
+    "of a rig that noise faster than its log shakes"
+)
+
+
+def trouble_with_bristles(case: Case, fitted: Fitted, effect: str) -> str:
+    """Why the fit does not tell of the `effect`, where that is presliding which no sensor sees; else ""."""
+    element, _, name = effect.partition(":")
+    noise = _noise(case) * case.scales[element].displacement
+    if name != "presliding" or not np.isfinite(noise):
+        return ""
+    stiffness = fitted.system.parameters[f"{element}_bristle_stiffness"]
+    seen = _dry_level(case, fitted, element) / (stiffness * noise)
+    return UNSEEN.format(seen) if seen < VISIBLE else ""
+
+
+def _noise(case: Case) -> float:
+    """Noise of the best sensor of a position, relative to what it shows; infinite where there is none."""
+    outputs = case.system.info.outputs
+    shares = [
+        case.noise[c] / np.nanstd(np.concatenate([case.prepared[i].measured[c] for i in case.train]))
+        for c in case.measured
+        if outputs[c].axis is not None
+    ]
+    return float(min(shares, default=np.inf))
+
+
+def _dry_level(case: Case, fitted: Fitted, element: str) -> float:
+    """Friction of an element while it is slow, rms of the port where that is largest."""
+    own = [k for k, port in enumerate(case.system.info.ports) if port.element == element]
+    runs = [
+        np.asarray(case.run(i, fitted.system, initial, ports=True)["ports"])[own]
+        for i, initial in zip(case.train, fitted.initial, strict=True)
+    ]
+    speed, force = (np.abs(np.concatenate([run[:, k] for run in runs], axis=1)) for k in (0, 3))
+    slow = speed <= np.median(speed, axis=1, keepdims=True)
+    return float(np.max(np.sqrt(np.mean(np.square(force), axis=1, where=slow))))
