@@ -53,6 +53,13 @@ def test_friction_that_differs_as_it_may_is_no_gap(known: Any) -> None:
     assert np.all(after[seen] < 0.5 * case.noise[seen])
 
 
+def test_what_suits_best_and_is_improbable_is_not_allowed(known: Any) -> None:
+    """Friction 20 times its sd higher suits the run, and the model stays as foretold."""
+    case, fitted = known
+    before, after = again(case, fitted, measured_as(case, case.test[0], 20.0 * SCATTER))
+    assert np.array_equal(before, after, equal_nan=True)
+
+
 def test_what_the_fit_rules_out_stays_a_gap(known: Any) -> None:
     """A cable with another stiffness, which seven training experiments know: the eighth may move it a little."""
     case, fitted = known

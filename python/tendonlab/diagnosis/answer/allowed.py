@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from tendonlab.diagnosis.answer.heldout import Replayed, row_mean_squares
 from tendonlab.errors import NumericalError
@@ -16,6 +17,7 @@ from tendonlab.fitting.problem import Problem, pose
 from tendonlab.simulation.system import System
 
 ROUNDS = 5  # of Gauss and Newton
+RARE = 0.001  # chance below which what suits an experiment best is nothing that the fit allows
 Row = tuple[System, tuple[float, ...], np.ndarray, np.ndarray]  # system, initial state, residuals, outputs
 PARTS = (1.0, 0.5, 0.25, 0.1)  # of a step that are tried
 
@@ -76,7 +78,7 @@ class _Search:
 
     def best(self, initial: tuple[float, ...]) -> Row | None:
         """The most probable model, sought from the fitted one and this initial state; None where nothing is more
-        probable than these."""
+        probable than these, or where it is itself improbable."""
         num = int(self.moving.sum())
         start = ([*initial, *[0.0] * len(self.case.scatter)] - self.case.own_mean(self.i)) / self.case.own_sd(self.i)
         at, best = np.concatenate([np.zeros(num), start]), None
@@ -92,7 +94,7 @@ class _Search:
                 at, best = better
         except NumericalError:
             pass
-        if best is None:
+        if best is None or at @ self.prior @ at > chi2.isf(RARE, len(at)):
             return None
         return self._system(at), tuple(self._own(at)[: len(initial)].tolist()), best - self._measured, best
 

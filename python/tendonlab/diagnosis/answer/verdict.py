@@ -30,7 +30,8 @@ class Levels:
 
     `nominal`: at the untouched simulator, whitened, or plain where nothing repeats. `tuned`: whitened, of the
     refitted simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out
-    experiments, which decides where nothing repeats; where runs do, it must not be far. `explained`: share of the
+    experiments, which decides where nothing repeats; where runs do, it must not be far. `foretold`: the same without
+    what the fit's own uncertainty allows there, None where that is nothing. `explained`: share of the
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
@@ -49,6 +50,7 @@ class Levels:
     followed: float = 0.0
     scattered: float = 0.0
     drifted: float = 1.0
+    foretold: float | None = None
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class Verdict:
 
 def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> Verdict:
     """The verdict on the effects `selected` in these `rounds`, and its probabilities."""
-    after = levels.tuned if levels.repeated else levels.refitted
+    after = levels.tuned if levels.repeated else levels.refitted if levels.foretold is None else levels.foretold
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)
