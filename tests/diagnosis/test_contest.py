@@ -111,16 +111,25 @@ def test_a_further_effect_is_no_error_of_a_shape_where_it_gains_much_or_leaves_l
     assert _worth_adding(fitter, base, trials, further=False, largest_gain=largest)
 
 
+EMPTY: dict[str, Any] = {  # a model without free parameters
+    "free": (),
+    "x": (),
+    "system": SimpleNamespace(info=SimpleNamespace(effect=lambda name: SimpleNamespace(parameters=()))),
+}
+
+
 def test_a_trial_gains_what_its_model_has_over_the_one_it_extends() -> None:
     """Rows of the base count as those of the extended model; doubt is that of the gains of the experiments."""
     scores = np.array([5.0, 1.0, 2.0])
     base = SimpleNamespace(evidence=-50.0, left_out=scores, counted=lambda shares: counted.append(shares) or base)
+    base.free, base.x = (), ()
     counted: list[Any] = []
     fitted = SimpleNamespace(
         evidence=-20.0,
         left_out=scores + np.array([10.0, -1.0, 4.0]),
         shares=(0.5,),
         by_experiment=lambda gains: gains[:3],
+        **EMPTY,
     )
     made = Trial.of("a", fitted, base)  # type: ignore[arg-type]
     assert (made.evidence_gain, made.left_out_gain, counted) == (30.0, 13.0, [(0.5,)])
@@ -315,8 +324,8 @@ def test_the_gain_of_a_candidate_is_that_of_least_squares_with_the_free_paramete
 def test_gains_over_a_model_without_evidence_are_finite() -> None:
     """Where derivatives explode, the model without the effect has no evidence; probabilities stay numbers."""
     scores = np.array([1.0, 2.0])
-    base = SimpleNamespace(evidence=-np.inf, left_out=-np.inf * scores, counted=lambda shares: base)
-    fitted = SimpleNamespace(evidence=5.0, left_out=scores, shares=None, by_experiment=lambda gains: gains)
+    base = SimpleNamespace(evidence=-np.inf, left_out=-np.inf * scores, counted=lambda shares: base, **EMPTY)
+    fitted = SimpleNamespace(evidence=5.0, left_out=scores, shares=None, by_experiment=lambda gains: gains, **EMPTY)
     made = Trial.of("a", fitted, base)  # type: ignore[arg-type]
     assert made.evidence_gain == 1e9
     assert made.left_out_gain == 2e9

@@ -145,13 +145,13 @@ def port_records(load: np.ndarray) -> Any:
     return SimpleNamespace(coordinate=lambda port, quantity: ports[quantity], time=TIME)
 
 
-@pytest.mark.parametrize(("load", "y"), [(2.0 + np.sin(3 * TIME), "joint_load"), (np.full(801, 2.0), "joint_position")])
+@pytest.mark.parametrize(("load", "y"), [(2.0 + np.sin(3 * TIME), "joint load"), (np.full(801, 2.0), "joint position")])
 def test_a_map_is_over_load_where_load_varies_and_holds_the_rms_of_each_cell(load: np.ndarray, y: str) -> None:
     port = SimpleNamespace(name="joint", element="joint", load="effort")
     info = SimpleNamespace(ports=[port], element=lambda name: SimpleNamespace(axis=None))
-    of = case(1, system=SimpleNamespace(info=info, axis="rotary"))
+    of = case(1, system=SimpleNamespace(info=info, axis="rotary", kind="rigid_joint"))
     (found,) = where.maps(of, replayed(np.full(801, 0.3)), replayed(np.full(801, 0.2)), floor(0.1), port_records(load))
-    assert (found.x, found.y) == ("joint_velocity", y)
+    assert (found.x, found.y) == ("joint velocity", y)
     assert found.x_unit == "rad/s"
     seen = found.refitted[np.isfinite(found.refitted)]
     np.testing.assert_allclose(seen, 3.0)

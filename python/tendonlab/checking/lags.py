@@ -10,7 +10,7 @@ from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import Logs
 from tendonlab.checking.regression import FREEDOM, Fit
 from tendonlab.checking.scales import ROUGH_SHARE, shares
-from tendonlab.checking.terms import Terms, terms
+from tendonlab.checking.terms import Terms, sliding, terms
 
 SAMPLES, SCANNED = 4000, 20000  # that decide, and that the scan looks at
 LONGEST, PART = 0.5, 0.25  # s, and share of the shortest experiment: lags that are looked for
@@ -69,7 +69,9 @@ def lags(equation: Equation, logs: Logs) -> Lags:
 def _gain(
     equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
 ) -> np.ndarray:
-    """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each."""
+    """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each.
+    Where nothing moves by an equation, beyond what dry friction of its own brings: friction that falls with speed is
+    highest in a slow run."""
     common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
@@ -78,7 +80,13 @@ def _gain(
         return np.full(late.shape[1], np.inf)
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
-    return np.bincount(moved.run, nats, late.shape[1])
+    gained = np.bincount(moved.run, nats, late.shape[1])
+    if equation.axes or (velocity := sliding(equation, moved, 0)) is None:
+        return gained
+    left, dry = without.residual[0] / (without.level[0] * at.size[0] * FREEDOM**0.5), np.sign(velocity)[:, None]
+    here = [moved.run == i for i in range(len(gained))]
+    own = share[0] * np.array([_saved(left[of], dry[of]) for of in here])
+    return np.asarray(gained - 0.5 * (FREEDOM + 1) * own)
 
 
 def _slopes(equation: Equation, moved: Logs, kept: np.ndarray, channels: tuple[str, ...], at: Terms) -> np.ndarray:

@@ -173,8 +173,8 @@ def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column
     prescribed: where it began was not logged."""
     for k, unit in enumerate(size):
         parts = [("offset", np.ones(len(logs.run)), False)]
-        if k < len(equation.moved):
-            velocity = logs.moving[equation.moved[k]][1]
+        velocity = sliding(equation, logs, k)
+        if velocity is not None:
             parts += [("dry friction", np.sign(velocity), True), ("viscous friction", velocity, True)]
         for name, part, positive in parts:
             column = np.zeros((len(size), len(logs.run)))
@@ -184,6 +184,15 @@ def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column
             column = np.zeros((len(size), len(logs.run)))
             column[k, logs.run == run] = unit
             yield Unknown("start of a run", sd=EXTRA), column
+
+
+def sliding(equation: Equation, logs: Logs, k: int) -> np.ndarray | None:
+    """The velocity that friction in equation k follows: of the axis, or, as friction lowers what is transmitted, less
+    the logged one of a system without degrees of freedom."""
+    if k < len(equation.moved):
+        return np.asarray(logs.moving[equation.moved[k]][1])
+    flows = [s.name for s in equation.system.info.inputs if s.dimension == "flow" and s.name in logs.driving]
+    return -logs.driving[flows[0]][0] if flows and not equation.system.info.dof else None
 
 
 def rms(x: np.ndarray) -> float:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.floor import renewed
+from tendonlab.diagnosis.search.contest import CLEAR
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.trial import relief
 from tendonlab.diagnosis.search.workshop import Workshop
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
@@ -26,7 +28,7 @@ def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are foretold worse with the last effect; without repeats also where it removes
     little of what the model without it leaves, and may do even that by chance."""
     case, fitter = search.fitter.case, search.fitter
-    if not case.test:
+    if not case.test or relief(*search.path[-2:]) > CLEAR.evidence:  # what beliefs confirm needs no experiment
         return False
     before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)

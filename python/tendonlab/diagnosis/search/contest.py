@@ -152,11 +152,13 @@ def _worth_adding(
     fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool, largest_gain: float = 0.0
 ) -> bool:
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
-    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
-    With repeats, a further one must be no error of a shape. Without, it must explain enough, or leave what may be
-    noise. Near the floor, beyond the first effect and where it explains little, it must predict experiments that it
-    was not fitted to."""
+    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly,
+    unless without that effect only values that nobody believes reach the floor. With repeats, a further one must be no
+    error of a shape. Without, it must explain enough, or leave what may be noise. Near the floor, beyond the first
+    effect and where it explains little, it must predict experiments that it was not fitted to."""
     near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
+    if near_floor and trials[0].relieved > CLEAR.evidence:
+        return True
     if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and _evidence_counts(fitter, base)

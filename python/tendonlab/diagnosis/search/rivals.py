@@ -12,7 +12,13 @@ from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effe
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
 from tendonlab.diagnosis.search.swap import extended
-from tendonlab.diagnosis.search.trial import DETECT, FURTHER_SHARE, Trial, bar_for_further_effect, is_no_shape
+from tendonlab.diagnosis.search.trial import (
+    DETECT,
+    FURTHER_SHARE,
+    Trial,
+    bar_for_further_effect,
+    is_no_shape,
+)
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -125,7 +131,7 @@ def improve(
 
     def is_needed(place: Place) -> bool:
         no_shape = not fitter.floor.repeated or is_no_shape(place.others, [place.holder], most)
-        return bar.passed(place.holder) and no_shape
+        return bar.passed(place.holder) and no_shape and not place.holder.is_nothing
 
     needless = [place for place in contested if place is not strongest and not is_needed(place)]
     if needless:

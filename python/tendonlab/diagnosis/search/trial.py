@@ -23,7 +23,9 @@ HIDDEN = 100.0  # nats by which a weak effect must show behind a dominant one: e
 @dataclass(frozen=True)
 class Trial:
     """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain, `lost`
-    what experiments that are foretold worse lose, as a share of what the others gain."""
+    what experiments that are foretold worse lose, as a share of what the others gain, `relieved` what the beliefs gain:
+    they count as one more experiment, where they suit the model better; `is_nothing`: whether the effect may be 0 by
+    its own interval although it gains."""
 
     effect: str
     fitted: Fitted
@@ -31,6 +33,8 @@ class Trial:
     left_out_gain: float
     doubt: float
     lost: float = 0.0
+    relieved: float = 0.0
+    is_nothing: bool = False
 
     @classmethod
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
@@ -39,13 +43,35 @@ class Trial:
         with np.errstate(invalid="ignore"):  # infinity less infinity
             gains = fitted.by_experiment(_bounded(fitted.left_out - base.left_out))
             evidence = float(_bounded(np.subtract(fitted.evidence, base.evidence)))
+        relieved = relief(base, fitted)
+        gains = np.append(gains, relieved) if relieved > 0.0 else gains
         lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
-        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost)
+        nothing = evidence > DETECT.evidence and is_nothing(effect, fitted)
+        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost, relieved, nothing)
 
     @property
     def num_parameters(self) -> int:
         """Parameters of the effect."""
         return len(self.fitted.system.info.effect(self.effect).parameters)
+
+
+def is_nothing(effect: str, fitted: Fitted) -> bool:
+    """Whether every amplitude of the effect may be 0 by its own interval. What it gains is then no trace of the effect,
+    but of outputs that jump with the least of it, as where a gate opens one sample earlier."""
+    info = fitted.system.info
+    own = set(info.effect(effect).parameters) & {f.name for f in fitted.free}
+    intervals = [fitted.value(name)[1] for name in own if info.parameter(name).purpose == "amplitude"]
+    return bool(intervals) and all(lower <= 0.0 <= upper for lower, upper in intervals)
+
+
+def relief(base: Fitted, extended: Fitted) -> float:
+    """Nats by which what is believed of the parameters of `base` suits the `extended` model better."""
+
+    def strain(model: Fitted) -> float:
+        values = dict(zip((f.name for f in model.free), model.x, strict=True))
+        return 0.5 * float(sum(((values[f.name] - f.mean) / f.sd) ** 2 for f in base.free if f.name in values))
+
+    return strain(base) - strain(extended)
 
 
 def _bounded(gains: np.ndarray | float) -> np.ndarray:

@@ -22,6 +22,7 @@ from tendonlab.progress import track
 FAR_BEHIND = 0.1  # share of the most that another candidate promises, and of what the first one gains
 CLOSE = (0.1, 0.1, 0.01, 0.01, 0.001, 0.001)  # of the best gain: so far behind may be a worse optimum, by rounds
 SAME = 0.1  # nats that are no difference
+NOTHING = "by its own interval it may be 0, so what it gains is no trace of it"
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,10 @@ class Workshop:
         tried = [*([first] if first else []), *shown]
         trials = counted_alike([t for t in tried if isinstance(t, Trial)], base)
         failed = {t.effect: t.reason for t in tried if isinstance(t, Failed)}
-        return Refitted(self._levelled(fitter, base, trials), failed)
+        trials = self._levelled(fitter, base, trials)
+        holder = incumbent.effect if incumbent else None
+        nothing = {t.effect: NOTHING for t in trials if t.is_nothing and t.effect != holder}
+        return Refitted([t for t in trials if t.effect not in nothing], failed | nothing)
 
     def _levelled(self, fitter: Fitter, base: Fitted, trials: list[Trial]) -> list[Trial]:
         """The trials, those close behind the first also from where it ended, and the first from where they did."""

@@ -1,0 +1,41 @@
+"""What a trial makes of beliefs, and of effects that may be 0 although they gain."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.search.trial import Trial
+
+
+def believed(strain: float, **more: Any) -> Any:
+    """A model with one stated parameter, `strain` sd from what is believed of it, and one effect."""
+    free = (SimpleNamespace(name="inertia", mean=1.0, sd=0.1), SimpleNamespace(name="size", mean=0.0, sd=3.0))
+    purposes = {"inertia": "structure", "size": "amplitude"}
+    info = SimpleNamespace(
+        effect=lambda name: SimpleNamespace(parameters=("size",)),
+        parameter=lambda name: SimpleNamespace(purpose=purposes[name]),
+    )
+    made = SimpleNamespace(
+        free=free[: 1 + bool(more)], x=(1.0 + 0.1 * strain, 2.0)[: 1 + bool(more)], shares=None, evidence=0.0
+    )
+    made.left_out, made.system, made.by_experiment = np.zeros(3), SimpleNamespace(info=info), lambda gains: gains
+    made.counted = lambda *_: made
+    for name, value in more.items():
+        setattr(made, name, value)
+    return made
+
+
+def test_beliefs_that_suit_a_model_better_count_as_one_more_experiment() -> None:
+    made = Trial.of("a", believed(1.0, evidence=5.0), believed(9.0))
+    assert made.relieved == pytest.approx(40.0)
+    assert (made.left_out_gain, made.lost) == (pytest.approx(40.0), 0.0)
+    worse = Trial.of("a", believed(9.0, evidence=5.0), believed(1.0))
+    assert (worse.relieved, worse.left_out_gain) == (pytest.approx(-40.0), 0.0)
+
+
+@pytest.mark.parametrize(("interval", "nothing"), [((-0.1, 0.2), True), ((0.0, 0.2), True), ((0.1, 0.2), False)])
+def test_an_effect_that_gains_may_be_nothing(interval: tuple[float, float], nothing: bool) -> None:
+    fitted = believed(0.0, evidence=700.0, value=lambda name: (0.1, interval))
+    assert Trial.of("a", fitted, believed(0.0)).is_nothing is nothing
