@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tendonlab.diagnosis.search.contest import _reliever
 from tendonlab.diagnosis.search.trial import Trial
 
 
@@ -39,3 +40,14 @@ def test_beliefs_that_suit_a_model_better_count_as_one_more_experiment() -> None
 def test_an_effect_that_gains_may_be_nothing(interval: tuple[float, float], nothing: bool) -> None:
     fitted = believed(0.0, evidence=700.0, value=lambda name: (0.1, interval))
     assert Trial.of("a", fitted, believed(0.0)).is_nothing is nothing
+
+
+@pytest.mark.parametrize(("mean_square", "relieved", "found"), [(1.1, 40.0, "b"), (1.1, 20.0, None), (9.0, 40.0, None)])
+def test_what_relieves_the_beliefs_takes_over_near_the_floor(
+    mean_square: float, relieved: float, found: str | None
+) -> None:
+    base: Any = SimpleNamespace(mean_square=mean_square)
+    fitted: Any = None
+    trials = [Trial("a", fitted, 200.0, 200.0, 0.0), Trial("b", fitted, 50.0, 50.0, 0.0, relieved=relieved)]
+    best = _reliever(base, trials, {"a", "b"})
+    assert (best.effect if best else None) == found

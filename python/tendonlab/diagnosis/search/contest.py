@@ -101,7 +101,9 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
         trials = plainest_first(trials, established)
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
-        leader, established = None, set()
+        leader = _reliever(base, trials, established)
+        trials = [leader, *(t for t in trials if t is not leader)] if leader else trials
+        established = {leader.effect} if leader else set()
     failed = {s.effect: s.trouble for s in screened if not s.simulated} | dict(refitted.failed)
     failed = {effect: reason for effect, reason in failed.items() if effect not in {t.effect for t in trials}}
     return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader, failed=failed)
@@ -152,13 +154,11 @@ def _worth_adding(
     fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool, largest_gain: float = 0.0
 ) -> bool:
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
-    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly,
-    unless without that effect only values that nobody believes reach the floor. With repeats, a further one must be no
-    error of a shape. Without, it must explain enough, or leave what may be noise. Near the floor, beyond the first
-    effect and where it explains little, it must predict experiments that it was not fitted to."""
+    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
+    With repeats, a further one must be no error of a shape. Without, it must explain enough, or leave what may be
+    noise. Near the floor, beyond the first effect and where it explains little, it must predict experiments that it
+    was not fitted to."""
     near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
-    if near_floor and trials[0].relieved > CLEAR.evidence:
-        return True
     if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and _evidence_counts(fitter, base)
@@ -170,6 +170,12 @@ def _worth_adding(
     if not (enough or may_be_noise(fitter.case, first)):
         return False
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
+
+
+def _reliever(base: Fitted, trials: Sequence[Trial], established: Set[str]) -> Trial | None:
+    """The best trial without whose effect only parameters that nobody believes bring `base` not far from the floor."""
+    able = (t for t in trials if t.effect in established and t.relieved > CLEAR.evidence)
+    return next(able, None) if base.mean_square < FIRM else None
 
 
 def probabilities(
