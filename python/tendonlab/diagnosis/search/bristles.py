@@ -10,7 +10,7 @@ import numpy as np
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 
-VISIBLE = 2.0  # times its noise, by which a sensor sees bristles bend
+VISIBLE = 1.5  # times its noise, by which a sensor sees bristles bend: imitations bent by 1.1 at most
 UNSEEN = (
     "its bristles slide before any sensor sees them bend (by {:.1g} of its noise), so only their creep tells, as that "
     "of a rig that noise faster than its log shakes"
