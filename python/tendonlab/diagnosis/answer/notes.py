@@ -12,6 +12,7 @@ from tendonlab.diagnosis.answer.verdict import Levels
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.workshop import NOTHING
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import RUN_TO_RUN_UNKNOWN, Floor
@@ -105,10 +106,15 @@ def _stopped(model: Fitted, search: Search) -> str:
 def _on_the_failed(search: Search) -> list[str]:
     failed = {effect: reason for contest in search.rounds for effect, reason in contest.failed.items()}
     tried = {trial.effect for contest in search.rounds for trial in contest.trials}
+    failed = {effect: reason for effect, reason in failed.items() if effect not in tried}
+    nothing = ", ".join(effect for effect, reason in failed.items() if reason == NOTHING)
     return [
-        f"No fit succeeded with {effect}, which does not exclude it: {reason}."
-        for effect, reason in failed.items()
-        if effect not in tried
+        *(
+            f"No fit succeeded with {effect}, which does not exclude it: {reason}."
+            for effect, reason in failed.items()
+            if reason != NOTHING
+        ),
+        *([f"Gains evidence, yet {NOTHING}: {nothing}."] if nothing else []),
     ]
 
 
