@@ -4,12 +4,14 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from tendonlab.diagnosis.answer import notes
 from tendonlab.diagnosis.answer.verdict import Levels
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.workshop import NOTHING
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
@@ -59,10 +61,15 @@ def test_a_held_out_experiment_that_gets_no_better_is_a_warning() -> None:
 
 def test_effects_that_no_fit_succeeded_with_or_that_were_not_tried_are_warnings(fitter: Fitter, twin_case: Any) -> None:
     fitted = fitter.fit(twin_case.system, max_iterations=1)
-    contest = Round((), (), (), {None: 1.0}, None, set(), failed={"joint:coulomb": "it stopped"})
+    contest = Round(
+        (), (), (), {None: 1.0}, None, set(), failed={"joint:coulomb": "it stopped", "load:offset": NOTHING}
+    )
     search = Search(fitter, tuned=fitted, steps=(), rounds=(contest,))
-    said = "No fit succeeded with joint:coulomb, which does not exclude it: it stopped."
-    assert said in notes.warnings(twin_case, fitter.floor, search)
+    said = "joint:coulomb could not be weighed, which does not exclude it: it stopped."
+    warnings = notes.warnings(twin_case, fitter.floor, search)
+    assert said in warnings
+    (nothing,) = [w for w in warnings if "load:offset" in w]
+    assert nothing.endswith("intervals hold 0, so they do not count: load:offset.")
     (warning,) = notes.not_asked(twin_case, search, ["joint:presliding"])
     assert warning.startswith("Asked for and not tried: joint:presliding (")
     assert notes.not_asked(twin_case, search, None) == []
@@ -89,3 +96,12 @@ def test_an_error_that_is_no_noise_is_explained() -> None:
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
     (differs,) = notes.no_noise(replace(near, scattered=6.25))
     assert "friction that differs by 5 % from run to run" in differs
+
+
+def test_experiments_that_the_verdict_counts_otherwise_than_foretold_are_named(twin_case: Any) -> None:
+    floor: Any = SimpleNamespace(rms=np.array([1.0, np.nan, np.nan]))
+    told = [np.full((3, 5), size) for size in (3.0, 2.0)]
+    foretold, near = (SimpleNamespace(residuals=rows) for rows in (told, [told[0], np.full((3, 5), 1.0)]))
+    (warning,) = notes.allowed_more(twin_case, foretold, near, floor, twin_case.test[:2])  # type: ignore[arg-type]
+    assert twin_case.experiments[twin_case.test[1]].name in warning
+    assert "1.7 noise floors as foretold, 0 within" in warning

@@ -187,7 +187,7 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
     beyond what it lowers that of the others: friction that the simulator lacks helps all of them."""
     saved = np.zeros(len(equation.dataset.experiments))
     for k, name in enumerate(equation.moved):
-        columns = _sliding(logs.moving[name][1])
+        columns = _friction(logs.moving[name][1])
         for i in range(len(saved)):
             here = logs.run == i
             saved[i] += _saved(left[k, here], columns[here])
@@ -201,11 +201,11 @@ def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: i
     for k, name in enumerate(equation.moved):
         position, speed = logs.moving[name][:2, here]
         for deflection in _deflections(position):
-            saved = max(saved, _saved(left[k, here], np.column_stack([_sliding(speed), deflection])))
+            saved = max(saved, _saved(left[k, here], np.column_stack([_friction(speed), deflection])))
     return saved
 
 
-def _sliding(speed: np.ndarray) -> np.ndarray:
+def _friction(speed: np.ndarray) -> np.ndarray:
     """Dry and viscous friction (samples, 2), each of its own size."""
     return np.stack([np.sign(speed), speed / max(float(np.std(speed)), 1e-300)], axis=1)
 

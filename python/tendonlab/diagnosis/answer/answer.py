@@ -81,6 +81,7 @@ def answer(
             *notes.warnings(case, floor, search),
             *notes.not_asked(case, search, library),
             *notes.not_improved(held_out, search.selected),
+            *notes.allowed_more(case, stages["with_effect"], near["with_effect"], floor, judged),
             *notes.no_noise(levels),
         ),
         units=notes.units(case),

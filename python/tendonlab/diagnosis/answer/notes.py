@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED
+from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.verdict import Levels
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import Drift
@@ -107,15 +108,16 @@ def _on_the_failed(search: Search) -> list[str]:
     failed = {effect: reason for contest in search.rounds for effect, reason in contest.failed.items()}
     tried = {trial.effect for contest in search.rounds for trial in contest.trials}
     failed = {effect: reason for effect, reason in failed.items() if effect not in tried}
-    nothing = ", ".join(effect for effect, reason in failed.items() if reason == NOTHING)
-    return [
-        *(
-            f"No fit succeeded with {effect}, which does not exclude it: {reason}."
-            for effect, reason in failed.items()
-            if reason != NOTHING
-        ),
-        *([f"Gains evidence, yet {NOTHING}: {nothing}."] if nothing else []),
+    nothing = [effect for effect, reason in failed.items() if reason == NOTHING]
+    found = [
+        f"{effect} could not be weighed, which does not exclude it: {reason}."
+        for effect, reason in failed.items()
+        if effect not in nothing
     ]
+    if nothing:
+        names = ", ".join(nothing)
+        found.append(f"These gain evidence, but their 95 % intervals hold 0, so they do not count: {names}.")
+    return found
 
 
 def _on_the_refuted(search: Search) -> list[str]:
@@ -146,6 +148,19 @@ def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
         for name, row in worse.iterrows()
         if row["refitted"] > 0
     ]
+
+
+def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, experiments: Sequence[int]) -> list[str]:
+    """A warning for each held-out experiment that the verdict counts by what the fit leaves open, not as foretold."""
+    found = []
+    for i, before, after in zip(experiments, foretold.residuals, near.residuals, strict=True):
+        if after is not before:
+            told, left = (gap(row_mean_squares(of), floor.rms) for of in (before, after))
+            found.append(
+                f"Held-out experiment {case.experiments[i].name}: the gap is {told:.2g} noise floors as foretold, "
+                f"{left:.2g} within what the fit leaves open. The verdict counts the latter."
+            )
+    return found
 
 
 def no_noise(levels: Levels) -> list[str]:

@@ -30,8 +30,8 @@ class Levels:
 
     `nominal`: at the untouched simulator, whitened, or plain where nothing repeats. `tuned`: whitened, of the
     refitted simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out
-    experiments, which decides where nothing repeats; where runs do, it must not be far. `foretold`: the same without
-    what the fit's own uncertainty allows there, None where that is nothing. `explained`: share of the
+    experiments, which decides where nothing repeats; where runs do, it must not be far. `foretold`: the same as
+    the fit foretells it, not as its uncertainty allows; None where these are one. `explained`: share of the
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what

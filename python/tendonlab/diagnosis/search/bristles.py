@@ -9,6 +9,7 @@ import numpy as np
 
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.simulation.catalog import MEMORY, PORT_QUANTITIES
 
 VISIBLE = 1.5  # times its noise, by which a sensor sees bristles bend: imitations bent by 1.1 at most
 UNSEEN = (
@@ -18,13 +19,14 @@ UNSEEN = (
 
 
 def trouble_with_bristles(case: Case, fitted: Fitted, effect: str) -> str:
-    """Why the fit does not tell of the `effect`, where that is presliding which no sensor sees; else ""."""
-    element, _, name = effect.partition(":")
-    noise = _noise(case) * case.scales[element].displacement
-    if name != "presliding" or not np.isfinite(noise):
+    """Why the fit does not tell of the `effect`, where that is a bristle which no sensor sees bend; else ""."""
+    info = case.system.info
+    law = info.effect(effect)
+    stiffness = [name for name in law.parameters if info.parameter(name).dimension == "stiffness"]
+    if not (stiffness and law.roles & MEMORY) or not np.isfinite(noise := _noise(case)):
         return ""
-    stiffness = fitted.system.parameters[f"{element}_bristle_stiffness"]
-    seen = _dry_level(case, fitted, element) / (stiffness * noise)
+    bend = _dry_level(case, fitted, law.element) / fitted.system.parameters[stiffness[0]]
+    seen = bend / (noise * case.scales[law.element].displacement)
     return UNSEEN.format(seen) if seen < VISIBLE else ""
 
 
@@ -32,11 +34,16 @@ def _noise(case: Case) -> float:
     """Noise of the best sensor of a position, relative to what it shows; infinite where there is none."""
     outputs = case.system.info.outputs
     shares = [
-        case.noise[c] / np.nanstd(np.concatenate([case.prepared[i].measured[c] for i in case.train]))
+        case.noise[c] / travel
         for c in case.measured
-        if outputs[c].axis is not None
+        if outputs[c].axis is not None and (travel := _travel(case, c)) > 0.0
     ]
     return float(min(shares, default=np.inf))
+
+
+def _travel(case: Case, output: int) -> float:
+    """How far an output goes in the training experiments, as sd."""
+    return float(np.nanstd(np.concatenate([case.prepared[i].measured[output] for i in case.train])))
 
 
 def _dry_level(case: Case, fitted: Fitted, element: str) -> float:
@@ -46,6 +53,7 @@ def _dry_level(case: Case, fitted: Fitted, element: str) -> float:
         np.asarray(case.run(i, fitted.system, initial, ports=True)["ports"])[own]
         for i, initial in zip(case.train, fitted.initial, strict=True)
     ]
-    speed, force = (np.abs(np.concatenate([run[:, k] for run in runs], axis=1)) for k in (0, 3))
+    recorded = (PORT_QUANTITIES.index(name) for name in ("velocity", "force"))
+    speed, force = (np.abs(np.concatenate([run[:, k] for run in runs], axis=1)) for k in recorded)
     slow = speed <= np.median(speed, axis=1, keepdims=True)
     return float(np.max(np.sqrt(np.mean(np.square(force), axis=1, where=slow))))

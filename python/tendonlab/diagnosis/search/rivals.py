@@ -12,13 +12,7 @@ from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effe
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
 from tendonlab.diagnosis.search.swap import extended
-from tendonlab.diagnosis.search.trial import (
-    DETECT,
-    FURTHER_SHARE,
-    Trial,
-    bar_for_further_effect,
-    is_no_shape,
-)
+from tendonlab.diagnosis.search.trial import DETECT, FURTHER_SHARE, Trial, bar_for_further_effect, is_no_shape
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted

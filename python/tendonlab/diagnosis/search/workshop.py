@@ -22,7 +22,7 @@ from tendonlab.progress import track
 FAR_BEHIND = 0.1  # share of the most that another candidate promises, and of what the first one gains
 CLOSE = (0.25, 0.1, 0.01, 0.01, 0.001, 0.001)  # of the best gain: so far behind may be a worse optimum, by rounds
 SAME = 0.1  # nats that are no difference
-NOTHING = "may be 0 by its own interval, so that what it gains is no trace of it"
+NOTHING = "its 95 % interval holds 0"  # although it gains: why an effect does not count
 
 
 @dataclass(frozen=True)
