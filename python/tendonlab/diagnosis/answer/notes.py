@@ -108,14 +108,16 @@ def _on_the_failed(search: Search) -> list[str]:
     failed = {effect: reason for contest in search.rounds for effect, reason in contest.failed.items()}
     tried = {trial.effect for contest in search.rounds for trial in contest.trials}
     failed = {effect: reason for effect, reason in failed.items() if effect not in tried}
-    nothing = [effect for effect, reason in failed.items() if reason == NOTHING]
     found = [
         f"{effect} could not be weighed, which does not exclude it: {reason}."
         for effect, reason in failed.items()
-        if effect not in nothing
+        if reason != NOTHING
     ]
-    if nothing:
-        names = ", ".join(nothing)
+    ended = search.rounds[-1] if search.rounds and search.rounds[-1].accepted is None else None
+    names = ", ".join(
+        effect for effect, reason in failed.items() if ended and ended.failed.get(effect) == reason == NOTHING
+    )
+    if names:  # before an effect was found, what it leaves out gains for others
         found.append(f"These gain evidence, but their 95 % intervals hold 0, so they do not count: {names}.")
     return found
 
@@ -151,11 +153,12 @@ def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
 
 
 def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, experiments: Sequence[int]) -> list[str]:
-    """A warning for each held-out experiment that the verdict counts by what the fit leaves open, not as foretold."""
+    """A warning for each held-out experiment above the floor that the verdict counts by what the fit leaves open, not
+    as foretold."""
     found = []
     for i, before, after in zip(experiments, foretold.residuals, near.residuals, strict=True):
-        if after is not before:
-            told, left = (gap(row_mean_squares(of), floor.rms) for of in (before, after))
+        told, left = (gap(row_mean_squares(of), floor.rms) for of in (before, after))
+        if left < told and told > 1.0:
             found.append(
                 f"Held-out experiment {case.experiments[i].name}: the gap is {told:.2g} noise floors as foretold, "
                 f"{left:.2g} within what the fit leaves open. The verdict counts the latter."
