@@ -20,7 +20,7 @@ from tendonlab.blind.rig import (
     nominal_parameters,
     nominal_values,
 )
-from tendonlab.blind.strength import tune
+from tendonlab.blind.strength import _Tuner, tune
 from tendonlab.blind.systems import SYSTEMS
 
 
@@ -89,3 +89,15 @@ def test_stated_values_hide_the_kind():
         for name, (value, sd) in stated.items():
             assert sd == pytest.approx(0.0 if name == "gear_ratio" else 0.12 * value, rel=5e-3)
             assert value == float(f"{value:.5g}")
+
+
+def test_a_refit_that_explodes_is_none_and_spoils_no_other_rig():
+    """Far too stiff a cable for the step: its rig has no readings, the other one keeps its own."""
+    rigs = [small_rig("joint:coulomb"), small_rig("motor:coulomb")]
+    tuner = _Tuner(rigs)
+    tuner.run_truth(np.array([0.3, 0.3]))
+    stiff = np.zeros_like(tuner.refit)
+    stiff[0, tuner.free[0].index("cable_stiffness")] = 25.0
+    found, alone = tuner._nominal(stiff), tuner._nominal(np.zeros_like(stiff))
+    assert np.isnan(found[0]).all()
+    np.testing.assert_array_equal(found[1], alone[1])

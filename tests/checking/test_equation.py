@@ -8,10 +8,10 @@ import pytest
 
 from checking.pendulum import CONSTANT, late_run, record
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.lags import _scanned, _slopes
+from tendonlab.checking.lags import _scanned
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.scales import wrong_factors
-from tendonlab.checking.terms import rms, terms
+from tendonlab.checking.terms import rms, slopes_of_lags, terms
 from tendonlab.data import load
 
 INERTIA, GRAVITY, COULOMB, VISCOUS = 0.019, 1.15, 0.06, 0.04  # as the simulator states them
@@ -101,7 +101,7 @@ def test_slopes_of_a_lag_are_those_of_the_residual(equation: Equation) -> None:
     jerk = -6.4 * np.cos(2 * TIME)
     kept = np.arange(50, 550)
     at = terms(equation, logs.at(kept))
-    (slope,) = _slopes(equation, logs, kept, ("joint_angle",), at)
+    (slope,) = slopes_of_lags(equation, logs, at.residual, kept)
     expected = INERTIA * jerk + GRAVITY * np.cos(q) * v + VISCOUS * a
     steady = np.abs(v[kept]) > 0.1
     np.testing.assert_allclose(slope[0, steady], expected[kept][steady], atol=0.02)

@@ -120,5 +120,6 @@ def test_a_run_in_presliding_leads_no_other(tmp_path: Path) -> None:
     data = replace(logs, runs={**logs.runs, "micro": micro}).write(tmp_path)
     found = read_logs(data, data.system().info)
     assert found is not None
-    scanned = lags(Equation(data, data.system()), found).scanned
-    assert scanned[-1] == 0.0
+    late = lags(Equation(data, data.system()), found)
+    assert late.scanned[-1] == 0.0
+    assert late.gain[-1] == 0.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tendonlab.checking.regression import Fit
-from tendonlab.checking.scales import _helps, shares
+from tendonlab.checking.scales import _convinces, _helps, shares
 
 
 @pytest.mark.parametrize("times", [1, 5, 20])
@@ -39,3 +39,13 @@ def test_a_factor_mends_an_equation_or_relieves_beliefs_and_spoils_nothing(
     before: tuple[list[float], float], after: tuple[list[float], float], helps: bool
 ) -> None:
     assert _helps(left(*after), left(*before), np.array([True, True])) == helps
+
+
+@pytest.mark.parametrize(
+    ("level", "strain", "convinces"),
+    [([0.14, 0.69], 2.1, False), ([0.14, 0.69], 1.9, True), ([0.08, 0.69], 5.0, True)],
+)
+def test_corrected_logs_balance_somewhere_or_suit_the_beliefs(
+    level: list[float], strain: float, convinces: bool
+) -> None:
+    assert _convinces(left(level, strain), np.array([True, True])) == convinces

@@ -21,7 +21,7 @@ from .strength import Strength
 from .systems import SYSTEMS
 from .write import record, sealed_toml, write_dataset
 
-BATCH = 20  # cases simulated together
+BATCH = 40  # cases simulated together
 MAX_TRIES = 3  # of one effect, before another takes its place
 
 
@@ -84,9 +84,8 @@ def draw(
         strengths=strengths,
         second=second,
     )
-    wanted = list(enumerate(planned))
     make_folders(cases, sealed)
-    batches = [wanted[i : i + BATCH] for i in range(0, count, BATCH)]
+    batches = _batches(planned)
     work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
     with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
         if jobs <= 1:
@@ -97,6 +96,14 @@ def draw(
                 for done in pool.map(work, batches):
                     bar.update(done)
     return Path(out)
+
+
+def _batches(planned: Sequence[Wanted]) -> list[list[tuple[int, Wanted]]]:
+    """The places of the series in batches of one kind of rig each: only rigs of one kind are simulated side by side."""
+    of_kind: dict[str, list[tuple[int, Wanted]]] = {}
+    for place in enumerate(planned):
+        of_kind.setdefault(place[1].system, []).append(place)
+    return [places[i : i + BATCH] for places in of_kind.values() for i in range(0, len(places), BATCH)]
 
 
 def make_folders(*folders: Path) -> None:

@@ -233,8 +233,20 @@ class _Tuner:
         values = {name: rig.truth[name] for name in nominal_parameters(rig)}
         return values | {name: values[name] * float(np.exp(x)) for name, x in zip(self.free[index], logs, strict=False)}
 
+    @np.errstate(all="ignore")  # what has no value is NaN
     def _nominal(self, logs: Array) -> Array:
-        return self._run(self.rigs, [self._values(i, row) for i, row in enumerate(logs)], with_effect=False)
+        """Readings at `logs`; NaN of a rig for whose parameters the step is too long."""
+        values = [self._values(i, row) for i, row in enumerate(logs)]
+        try:
+            return self._run(self.rigs, values, with_effect=False)
+        except ArithmeticError:
+            return np.concatenate([self._alone(i, row) for i, row in enumerate(values)])
+
+    def _alone(self, index: int, values: dict[str, float]) -> Array:
+        try:
+            return self._run([self.rigs[index]], [values], with_effect=False)
+        except ArithmeticError:
+            return np.full((1, *self.truth.shape[1:]), np.nan)
 
     def _linearise(self, logs: Array) -> tuple[Array, Array]:
         """Readings at `logs` and their slopes, (num_rigs, width, outputs, ...)."""
@@ -282,7 +294,7 @@ class _Tuner:
         after = self.refit + self._step(residual, self.slopes, self.refit)
         gap = self._gap(truth - self._nominal(after))
         self.refit = np.where((gap < before)[:, None], after, self.refit)
-        return np.minimum(gap, before)
+        return np.fmin(gap, before)
 
     def nominal_gap(self) -> Array:
         """gap/noise of the nominal simulator as the dataset states it, before any refit."""

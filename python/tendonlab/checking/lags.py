@@ -10,7 +10,7 @@ from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import Logs
 from tendonlab.checking.regression import FREEDOM, Fit
 from tendonlab.checking.scales import ROUGH_SHARE, shares
-from tendonlab.checking.terms import Terms, sliding, terms
+from tendonlab.checking.terms import Terms, sliding, slopes_of_lags, terms
 
 SAMPLES, SCANNED = 4000, 20000  # that decide, and that the scan looks at
 LONGEST, PART = 0.5, 0.25  # s, and share of the shortest experiment: lags that are looked for
@@ -20,7 +20,6 @@ OWN = 3.0  # nats by which a lag of its own must suit an experiment better than 
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
 ROUNDS, CLOSE = 12, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
-NUDGE = 0.1  # of the step of the logs, by which the column of a lag is found
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         if not np.isfinite(fit.cost):
             return Lags(channels, late, sd, np.zeros(late.shape), np.zeros(late.shape[1]), scanned, np.inf)
         share = shares(fit.residual, logs.run[kept])
-        slopes = _slopes(equation, moved, kept, channels, at)
+        slopes = slopes_of_lags(equation, moved, at.residual, kept)
         own, belief = _with_friction(equation, moved.at(kept), at, slopes)
         step, sd = (part[: len(channels)] for part in _steps(at, fit, own, belief, logs.run[kept], share))
         late = late + np.clip(step, -logs.step, logs.step)
@@ -70,8 +69,8 @@ def _gain(
     equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
 ) -> np.ndarray:
     """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each.
-    Where nothing moves by an equation, beyond what dry friction of its own brings: friction that falls with speed is
-    highest in a slow run."""
+    Nothing where friction in presliding suits it as well. Where nothing moves by an equation, beyond what dry friction
+    of its own brings: friction that falls with speed is highest in a slow run."""
     common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
@@ -81,25 +80,16 @@ def _gain(
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
     gained = np.bincount(moved.run, nats, late.shape[1])
-    if equation.axes or (velocity := sliding(equation, moved, 0)) is None:
+    left = without.residual / (without.level * at.size * FREEDOM**0.5)[:, None]
+    if equation.axes:
+        bent = [_by_bristles(equation, moved, left, i) for i in range(len(gained))]
+        return np.where(gained > 0.5 * (FREEDOM + 1) * share[0] * np.array(bent), gained, 0.0)
+    velocity = sliding(equation, moved, 0)
+    if velocity is None:
         return gained
-    left, dry = without.residual[0] / (without.level[0] * at.size[0] * FREEDOM**0.5), np.sign(velocity)[:, None]
-    here = [moved.run == i for i in range(len(gained))]
-    own = share[0] * np.array([_saved(left[of], dry[of]) for of in here])
+    here, dry = [moved.run == i for i in range(len(gained))], np.sign(velocity)[:, None]
+    own = share[0] * np.array([_saved(left[0, of], dry[of]) for of in here])
     return np.asarray(gained - 0.5 * (FREEDOM + 1) * own)
-
-
-def _slopes(equation: Equation, moved: Logs, kept: np.ndarray, channels: tuple[str, ...], at: Terms) -> np.ndarray:
-    """What the equations change per second by which each output is taken earlier (channels, equations, samples).
-    Nothing where that turns the direction of dry friction: a jump has no slope."""
-    nudge = NUDGE * moved.step
-    slopes = np.zeros((len(channels), *at.residual.shape))
-    for slope, name in zip(slopes, channels, strict=True):
-        later = moved.nudged(name, nudge).at(kept)
-        slope[:] = (equation.evaluate(equation.along(later), len(kept)) - at.residual) / nudge
-        if name in moved.moving:
-            slope[:, moved.moving[name][1, kept] * later.moving[name][1] <= 0] = 0.0
-    return slopes
 
 
 def _weights(slopes: np.ndarray, run: np.ndarray, num: int) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -31,7 +31,8 @@ class Logs:
 
     `moving`: position, velocity and acceleration of each measured axis; `driving`: each input, its rate and its
     integral; `others`: the other outputs. `run`: which experiment a sample is of; `time`: from the start of its
-    experiment, s; `step`: s from one to the next; `clear`: whether the equation can be judged there."""
+    experiment, s; `step`: s from one to the next; `clear`: whether the equation can be judged there; `changing`: the
+    rate of the last row of each output, once these are thinned."""
 
     moving: dict[str, np.ndarray]
     driving: dict[str, np.ndarray]
@@ -40,6 +41,7 @@ class Logs:
     time: np.ndarray
     step: float
     clear: np.ndarray
+    changing: dict[str, np.ndarray] = field(default_factory=dict)
 
     def scaled(self, signals: Sequence[str], factor: float) -> Logs:
         """The logs with `signals` divided by a factor; "time" is the clock."""
@@ -47,7 +49,7 @@ class Logs:
             rates = float(factor) ** np.array([0.0, 1.0, 2.0, -1.0])[:, None]
             moving = {name: rows * rates[:3] for name, rows in self.moving.items()}
             driving = {name: rows * rates[[0, 1, 3]] for name, rows in self.driving.items()}
-            return replace(self, moving=moving, driving=driving)
+            return replace(self, moving=moving, driving=driving, changing={})
         return self._each(lambda name, rows: rows / factor if name in signals else rows)
 
     def earlier(self, by: Mapping[str, np.ndarray]) -> Logs:
@@ -81,12 +83,19 @@ class Logs:
     def nudged(self, signal: str, by: float) -> Logs:
         """The logs with an output moved by a small part of a step, s, towards the past."""
         still = (self.moving | self.others)[signal]
-        rates = np.concatenate([still[1:], np.gradient(still[-1:], self.step, axis=1)])
+        last = self.changing[signal] if self.changing else self._rate(still)
+        rates = np.concatenate([still[1:], last])
         return self._each(lambda name, rows: rows + by * rates if name == signal else rows)
 
     def thinned(self, most: int) -> Logs:
         """The logs at `regular` samples alone."""
-        return self.at(self.regular(most))
+        kept = self.regular(most)
+        rates = {name: self._rate(rows)[:, kept] for name, rows in (self.moving | self.others).items()}
+        return replace(self.at(kept), changing=rates)
+
+    def _rate(self, rows: np.ndarray) -> np.ndarray:
+        """How fast the last row changes, per s (1, samples)."""
+        return np.asarray(np.gradient(rows[-1:], self.step, axis=1))
 
     def regular(self, most: int) -> np.ndarray:
         """Every so many samples, at most `most`, of those that are clear. An experiment of which one alone is left has
@@ -103,11 +112,11 @@ class Logs:
 
     def _each(self, change: Callable[[str, np.ndarray], np.ndarray]) -> Logs:
         """The logs with every channel changed."""
-        moving, driving, others = (
+        moving, driving, others, changing = (
             {name: change(name, rows) for name, rows in channels.items()}
-            for channels in (self.moving, self.driving, self.others)
+            for channels in (self.moving, self.driving, self.others, self.changing)
         )
-        return replace(self, moving=moving, driving=driving, others=others)
+        return replace(self, moving=moving, driving=driving, others=others, changing=changing)
 
 
 def read_logs(dataset: Dataset, info: SystemInfo, marked: Marks | None = None) -> Logs | None:

@@ -25,6 +25,7 @@ MENDED = 0.7  # share of the level of a bad equation that a right factor must at
 RELIEVED = 0.5  # share of the strain of the beliefs that it may leave instead
 SPOILT = 1.5  # times the level of an equation that explains too little, beyond which a factor is no right one
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
+BALANCED = 0.1  # level of an equation that balances: where none does, nothing may be strained
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
 MERE = 0.9  # share of the gain of a negative factor at which a mere sign is believed,
@@ -74,7 +75,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
-    if not _helps(best.fit, base, told):
+    if not _helps(best.fit, base, told) or not _convinces(best.fit, told):
         return []
     beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
     if best.value == -1.0 and _heals(best.fit, base, told):
@@ -109,6 +110,11 @@ def _helps(fit: Fit, base: Fit, told: np.ndarray) -> bool:
     mends = bool(np.any(fit.level[suspect] < MENDED * base.level[suspect]))
     relieves = base.strain >= STRAINED and fit.strain < RELIEVED * base.strain
     return (mends or relieves) and not np.any(fit.level > np.fmax(EXPLAINED, SPOILT * base.level))
+
+
+def _convinces(fit: Fit, told: np.ndarray) -> bool:
+    """Whether the logs, once corrected, suit the simulator anywhere: an equation balances, or the beliefs suit it."""
+    return fit.strain < STRAINED or bool(np.any(fit.level[told] < BALANCED))
 
 
 def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:

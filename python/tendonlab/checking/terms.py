@@ -17,6 +17,8 @@ from tendonlab.simulation.catalog import ParameterInfo
 NUDGE = 1e-3  # relative change by which a column is found
 EXTRA = 0.3  # of the rms that an equation predicts: sd of offsets, and of friction that the simulator may lack
 OFFSET = 0.1  # of the travel: sd of the zero of an angle
+LATER = 0.1  # of the step of the logs, by which the column of a lag is found
+LATE = 0.02  # s: sd of a lag that an output has in all experiments
 LEAST_POWER = 0.01  # to which a parameter must raise what the inputs contribute, to count as a gain
 
 Column = tuple[Unknown, np.ndarray]
@@ -46,7 +48,7 @@ class Terms:
 
 @np.errstate(all="ignore")  # wrong logs may lead anywhere; what has no value is left out
 def terms(equation: Equation, logs: Logs) -> Terms:
-    """The regression of `equation` on `logs`."""
+    """The regression of `equation` on `logs`; with a lag of each output where the logs are thinned."""
     stretches, num = equation.along(logs), len(logs.run)
     free = _free(equation)
     nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items()}
@@ -66,6 +68,9 @@ def terms(equation: Equation, logs: Logs) -> Terms:
         gain = _gain(*free[k], unstated * residual, slope, driven, grown)
         rows.append(gain or _believed(*free[k], slope / size[:, None], size))
     rows += [*zeros, *_extras(equation, logs, size)]
+    if logs.changing:
+        each = zip(equation.measured, slopes_of_lags(equation, logs, residual), strict=True)
+        rows += [(Unknown(f"lag of {name}", sd=LATE), slope) for name, slope in each]
     seen = [(u, c) for u, c in rows if np.any(c) and np.isfinite(c).all()]
     columns = np.array([c for _, c in seen]).reshape(len(seen), *residual.shape)
     return Terms(residual, columns, tuple(u for u, _ in seen), size)
@@ -193,6 +198,25 @@ def sliding(equation: Equation, logs: Logs, k: int) -> np.ndarray | None:
         return np.asarray(logs.moving[equation.moved[k]][1])
     flows = [s.name for s in equation.system.info.inputs if s.dimension == "flow" and s.name in logs.driving]
     return -logs.driving[flows[0]][0] if flows and not equation.system.info.dof else None
+
+
+def slopes_of_lags(equation: Equation, logs: Logs, at: np.ndarray, kept: np.ndarray | None = None) -> np.ndarray:
+    """What the equations, which leave `at`, change per second by which each output is taken earlier (outputs,
+    equations, samples); `kept`: at these samples alone. Nothing where that turns the direction of dry friction: a jump
+    has no slope."""
+    nudge = LATER * logs.step
+    slopes = np.zeros((len(equation.measured), *at.shape))
+    here = logs if kept is None else logs.at(kept)
+    for slope, name in zip(slopes, equation.measured, strict=True):
+        later = logs.nudged(name, nudge)
+        later = later if kept is None else later.at(kept)
+        if name in logs.others:  # what it should read stays
+            row = equation.predicted.index((name,))
+            slope[row] = (later.others[name][0] - here.others[name][0]) / nudge
+            continue
+        slope[:] = (equation.evaluate(equation.along(later), at.shape[1]) - at) / nudge
+        slope[:, here.moving[name][1] * later.moving[name][1] <= 0] = 0.0
+    return slopes
 
 
 def rms(x: np.ndarray) -> float:
