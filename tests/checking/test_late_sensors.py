@@ -27,9 +27,9 @@ NOISE = {"motor_angle": 2e-4, "joint_angle": 1e-4, "cable_torque": 4e-3}
 TIME = np.arange(0.0, 6.0, 0.005)
 
 
-def logs(folder: Path, *, late: float, factor: float = 1.0) -> tl.Dataset:
-    """Four runs under random sines; the joint sensor is `late` seconds, the motor torque is logged times `factor`.
-    All parameters but the gear ratio are believed to 12 %, and wrong by 8 %."""
+def logs(folder: Path, *, late: float = 0.0, factor: float = 1.0, delay: float = 0.0) -> tl.Dataset:
+    """Four runs under random sines; the joint sensor is `late` seconds, the torque acts after a `delay`, s, and is
+    logged times `factor`. All parameters but the gear ratio are believed to 12 %, and wrong by 8 %."""
     rng = np.random.default_rng(0)
     believed = {n: v if n == "gear_ratio" else v * np.exp(0.08 * rng.standard_normal()) for n, v in TRUTH.items()}
     stated = [f"{n} = {{ value = {v}, sd = {0 if n == 'gear_ratio' else 0.12 * v} }}" for n, v in believed.items()]
@@ -40,7 +40,8 @@ def logs(folder: Path, *, late: float, factor: float = 1.0) -> tl.Dataset:
         phases = rng.uniform(0.0, 2.0 * np.pi, 5)
         sines = np.sin(2.0 * np.pi * np.outer(TIME, [0.3, 0.7, 1.1, 1.9, 2.6]) + phases)
         torque = 0.02 + 0.018 * sines.sum(axis=1)
-        motion = system.simulate(pd.DataFrame({"motor_torque": torque}, index=TIME))
+        acting = np.interp(TIME - delay, TIME, torque)
+        motion = system.simulate(pd.DataFrame({"motor_torque": acting}, index=TIME))
         read = {name: motion[name].to_numpy() for name in NOISE}
         read["joint_angle"] = np.interp(TIME - late, TIME, read["joint_angle"])
         read = {name: y + NOISE[name] * rng.standard_normal(len(TIME)) for name, y in read.items()}
@@ -55,6 +56,11 @@ def logs(folder: Path, *, late: float, factor: float = 1.0) -> tl.Dataset:
 @pytest.mark.parametrize("late", [0.0, 0.004, 0.006])
 def test_a_late_sensor_is_no_wrong_scale(late: float, tmp_path: Path) -> None:
     assert [f for f in tl.check(logs(tmp_path, late=late)).findings if f.blocks] == []
+
+
+@pytest.mark.parametrize("delay", [0.009, 0.02])
+def test_a_late_torque_is_no_wrong_sign(delay: float, tmp_path: Path) -> None:
+    assert [f for f in tl.check(logs(tmp_path, delay=delay)).findings if f.blocks] == []
 
 
 @pytest.mark.parametrize("factor", [1000.0, 2.0, 0.01, -1.0])

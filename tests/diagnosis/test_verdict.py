@@ -153,7 +153,7 @@ def selected(
     nominal: float = 50.0,
     tuned: float = 20.0,
     explained: float | None = 0.9,
-    left: float = 9.0,
+    left: float = 3.9,
     none: float = 0.01,
     repeated: bool = True,
     whitened: float = 2.0,
@@ -183,6 +183,14 @@ def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess_o
     assert found.verdict == verdict
     assert max(found.probability, key=lambda name: found.probability[name]) == verdict
     assert sum(found.probability.values()) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize(("explained", "verdict"), [(0.84, "unknown_effect"), (0.86, "effect"), (0.98, "effect")])
+def test_what_is_left_far_above_the_floor_asks_for_more(explained: float, repeated: bool, verdict: str) -> None:
+    found = selected(explained=explained, repeated=repeated, left=4.1)
+    assert found.verdict == verdict
+    assert explained < 0.9 or found.probability["effect"] > 0.95
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,7 @@ RELIEVED = 0.5  # share of the strain of the beliefs that it may leave instead
 SPOILT = 1.5  # times the level of an equation that explains too little, beyond which a factor is no right one
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 BALANCED = 0.1  # level of an equation that balances: where none does, nothing may be strained
+LATEST, MOST_LAGS = 0.05, 8  # s: lags of outputs that are tried before a factor is told, at most so many
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
 MERE = 0.9  # share of the gain of a negative factor at which a mere sign is believed,
@@ -75,7 +76,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
-    if not _helps(best.fit, base, told) or not _convinces(best.fit, told):
+    if not _helps(best.fit, base, told) or not _convinces(best.fit, told) or _suits_late(equation, logs, best, share):
         return []
     beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
     if best.value == -1.0 and _heals(best.fit, base, told):
@@ -115,6 +116,20 @@ def _helps(fit: Fit, base: Fit, told: np.ndarray) -> bool:
 def _convinces(fit: Fit, told: np.ndarray) -> bool:
     """Whether the logs, once corrected, suit the simulator anywhere: an equation balances, or the beliefs suit it."""
     return fit.strain < STRAINED or bool(np.any(fit.level[told] < BALANCED))
+
+
+def _suits_late(equation: Equation, logs: Logs, factor: Factor, share: np.ndarray) -> bool:
+    """Whether outputs that are late, all or one, suit the simulator better than a factor, and spoil no equation: beyond
+    a step of the logs, a lag is more than its slope."""
+    everywhere, step = np.ones(len(equation.dataset.experiments)), max(logs.step, LATEST / MOST_LAGS)
+    bearable = np.fmax(SUSPECT, SPOILT * factor.fit.level)
+    for lag in np.arange(step, LATEST, step):
+        for late in (equation.measured, *((name,) for name in equation.measured)):
+            moved = logs.earlier(dict.fromkeys(late, lag * everywhere)).thinned(FINE)
+            found = terms(equation, moved).fit(share)
+            if found.cost < factor.fit.cost and np.all(found.level < bearable):
+                return True
+    return False
 
 
 def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:

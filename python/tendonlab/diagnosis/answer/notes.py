@@ -126,7 +126,7 @@ def _on_the_refuted(search: Search) -> list[str]:
     if not search.refuted:
         return []
     chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
-    against = "held-out ones are foretold worse with it" if search.fitter.floor.repeated else chance
+    against = "held-out ones are foretold worse with it, or hardly better" if search.fitter.floor.repeated else chance
     names = ", ".join(search.refuted)
     return [f"Not established: {names}. The training experiments speak for it, but {against}."]
 

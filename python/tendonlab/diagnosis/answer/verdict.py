@@ -18,6 +18,8 @@ NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at th
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
+EXPLAINED_FAR = 0.85  # the same where what they leave is `FAR`: right effects removed 0.93 and more there
+WELL_KNOWN = 2.5  # by how much less that share scatters there
 AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
@@ -77,9 +79,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     room = _room(levels)
     is_missing = levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR)
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
-    needed = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
-    whole = max((levels.explained or 0.0) - needed, NO_GAP - levels.left)
+    whole = max(_whole(levels), NO_GAP - levels.left)
     spare = min(_noise_room(levels), whole, _chance_room(levels))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
@@ -104,6 +105,16 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     effects, sets = marginals(rounds, there=is_whole + (1.0 - is_whole) * partly)
     groups = [group for contest in rounds if (group := _group(contest))]
     return Verdict(verdict, {k: v / total for k, v in weight.items()}, effects, sets, groups)
+
+
+def _whole(levels: Levels) -> float:
+    """By how much the selected effects remove enough of the held-out excess to be the whole answer. Far above the floor
+    that share is well known."""
+    explained = levels.explained or 0.0
+    if levels.left > FAR:
+        return WELL_KNOWN * (explained - EXPLAINED_FAR)
+    is_enough = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
+    return explained - is_enough
 
 
 def _room(levels: Levels) -> float:
