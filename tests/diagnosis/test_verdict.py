@@ -188,9 +188,15 @@ def test_an_effect_is_the_answer_where_it_removes_three_quarters_of_the_excess_o
 @pytest.mark.parametrize("repeated", [False, True])
 @pytest.mark.parametrize(("explained", "verdict"), [(0.84, "unknown_effect"), (0.86, "effect"), (0.98, "effect")])
 def test_what_is_left_far_above_the_floor_asks_for_more(explained: float, repeated: bool, verdict: str) -> None:
-    found = selected(explained=explained, repeated=repeated, left=4.1)
+    found = selected(explained=explained, repeated=repeated, left=8.1)
     assert found.verdict == verdict
     assert explained < 0.9 or found.probability["effect"] > 0.95
+
+
+@pytest.mark.parametrize(("left", "verdict"), [(3.9, "effect"), (5.6, "effect"), (5.8, "unknown_effect")])
+def test_what_is_enough_grows_with_what_is_left(left: float, verdict: str) -> None:
+    """Half way (in logarithms) from 4 to 8, an assumed floor asks for 72.5 %."""
+    assert selected(explained=0.726, repeated=False, left=left).verdict == verdict
 
 
 @pytest.mark.parametrize(

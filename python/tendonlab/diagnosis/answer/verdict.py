@@ -18,7 +18,7 @@ NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at th
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
-EXPLAINED_FAR = 0.85  # the same where what they leave is `FAR`: right effects removed 0.93 and more there
+EXPLAINED_FAR = 0.85  # the same where they leave twice `FAR`: right effects removed 0.93 and more there
 WELL_KNOWN = 2.5  # by how much less that share scatters there
 AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
@@ -109,12 +109,11 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
 
 def _whole(levels: Levels) -> float:
     """By how much the selected effects remove enough of the held-out excess to be the whole answer. Far above the floor
-    that share is well known."""
-    explained = levels.explained or 0.0
-    if levels.left > FAR:
-        return WELL_KNOWN * (explained - EXPLAINED_FAR)
-    is_enough = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
-    return explained - is_enough
+    more is asked for, and that share is well known; from `FAR` to twice that, one passes into the other."""
+    near = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
+    far = float(np.clip(np.log2(max(levels.left, FAR) / FAR), 0.0, 1.0))
+    enough = near + far * (EXPLAINED_FAR - near)
+    return (1.0 + far * (WELL_KNOWN - 1.0)) * ((levels.explained or 0.0) - enough)
 
 
 def _room(levels: Levels) -> float:
