@@ -9,6 +9,10 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.checking.equation import Equation
+from tendonlab.checking.logs import read_logs
+from tendonlab.checking.scales import FINE, Factor, _suits_late
+from tendonlab.checking.terms import terms
 
 TRUTH = {
     "motor_inertia": 8.1e-5,
@@ -68,3 +72,15 @@ def test_a_wrong_torque_is_found_beside_a_late_sensor(factor: float, tmp_path: P
     [found] = [f for f in tl.check(logs(tmp_path, late=0.004, factor=factor)).findings if f.blocks]
     assert (found.problem, found.signal) == ("sign" if factor < 0 else "scale", "motor_torque")
     assert found.factor == pytest.approx(factor, rel=0.1)
+
+
+@pytest.mark.parametrize(("delay", "factor", "is_late"), [(0.02, 1.0, True), (0.0, -1.0, False), (0.0, 5.0, False)])
+def test_lags_are_weighed_against_a_factor(delay: float, factor: float, is_late: bool, tmp_path: Path) -> None:
+    """Where the torque is late, a lag suits better than a turned sign; where it is logged wrongly, none does."""
+    data = logs(tmp_path, delay=delay, factor=factor)
+    equation, found = Equation(data, data.system()), read_logs(data, data.system().info)
+    assert found is not None
+    told = -1.0 if is_late else factor
+    share = np.full(len(equation.predicted), 0.2)
+    fit = terms(equation, found.thinned(FINE).scaled(["motor_torque"], told)).fit(share)
+    assert _suits_late(equation, found, Factor(("motor_torque",), told, fit), share) == is_late

@@ -32,7 +32,8 @@ def _is_refuted(search: Search) -> bool:
     even that by chance."""
     case, fitter = search.fitter.case, search.fitter
     won = search.rounds[len(search.steps) - 1].accepted
-    if not case.test or won is None or relief(*search.path[-2:]) > CLEAR.evidence:  # beliefs confirm it
+    assert won is not None  # every step was won
+    if not case.test or relief(*search.path[-2:]) > CLEAR.evidence:  # what beliefs confirm needs no experiment
         return False
     before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
