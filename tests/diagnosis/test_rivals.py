@@ -178,7 +178,7 @@ def test_a_place_is_contested_anew_where_the_others_had_ended_in_a_wrong_optimum
     old = [
         Place(replace(nominal, added=(o,)), trial(e, 100.0), contest) for o, e in ((DELAY, STRIBECK), (STRIBECK, DELAY))
     ]
-    fitter: Any = None
+    fitter: Any = SimpleNamespace(left_by=lambda model: None)
     found = rivals.contest_each_place(fitter, both, {place.key: place for place in old}, shop)
     assert [place.holder.effect for place in found] == [STRIBECK, DELAY]
     assert all((place not in old) == is_new for place in found)

@@ -17,7 +17,15 @@ from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.diagnosis.search.workshop import Refitted
 from tendonlab.errors import NumericalError
 
-FITTER: Any = SimpleNamespace(floor=SimpleNamespace(repeated=True), case=SimpleNamespace())
+
+def repeated(**more: Any) -> Any:
+    """A fitter whose floor is from repeats: no model changes it."""
+    fitter = SimpleNamespace(floor=SimpleNamespace(repeated=True), case=SimpleNamespace(), **more)
+    fitter.left_by = lambda model: fitter
+    return fitter
+
+
+FITTER = repeated()
 
 
 def model(*added: str, evidence: float = 0.0, exploded: bool = False) -> Any:
@@ -172,9 +180,7 @@ def test_a_rival_far_ahead_is_established_only_by_halves(
     monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
     monkeypatch.setattr(Trial, "of", lambda effect, fitted, others: trial(effect, 100.0, "b"))
     monkeypatch.setattr(rivals, "predicts_better", lambda *_: predicts)
-    fitter: Any = SimpleNamespace(
-        floor=FITTER.floor, settled=lambda fit: fit, fit=lambda system, added, initial: model(*added)
-    )
+    fitter = repeated(settled=lambda fit: fit, fit=lambda system, added, initial: model(*added))
     candidates = [screened("holder", 90.0), *(screened(name, 50.0) for name in "pqrs"), screened("weak", 2.0)]
     shop: Any = Shop(candidates, {"p": gain})
     (found,) = contest_each_place(fitter, model("holder"), {}, shop)
@@ -188,11 +194,7 @@ def test_a_model_whose_derivatives_explode_names_no_rival(monkeypatch: pytest.Mo
     monkeypatch.setattr(rivals, "replace", lambda base, **_: base)
     monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
     monkeypatch.setattr(Trial, "of", lambda effect, fitted, others: trial(effect, 100.0))
-    fitter: Any = SimpleNamespace(
-        floor=FITTER.floor,
-        settled=lambda fit: fit,
-        fit=lambda system, added, initial: model(*added, exploded=True),
-    )
+    fitter = repeated(settled=lambda fit: fit, fit=lambda system, added, initial: model(*added, exploded=True))
     shop: Any = Shop([screened("p", 50.0)], {"p": 95.0})
     (found,) = contest_each_place(fitter, model("holder"), {}, shop)
     assert shop.refitted == []

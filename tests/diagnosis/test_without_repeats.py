@@ -9,6 +9,11 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
+from tendonlab.diagnosis.search.rivals import contest_each_place
+from tendonlab.diagnosis.search.swap import extended
+from tendonlab.diagnosis.search.workshop import open_workshop
+from tendonlab.fitting.case import make_case
 
 pytestmark = pytest.mark.slow
 RATE, DURATION, NOISE = 100.0, 8.0, 1e-4
@@ -59,3 +64,20 @@ def test_nothing_is_named_where_nothing_is_missing(tmp_path: Path) -> None:
     why = tl.diagnose(write(tmp_path, RIG, seed=4), progress=False)
     assert why.selected == ()
     assert why.verdict in ("no_gap", "parameters_only")
+
+
+@pytest.mark.cpu(60)
+def test_an_effect_leads_the_contest_for_its_own_place(tmp_path: Path) -> None:
+    """Without it, noise is what the others leave: a screen under any other noise would favour whatever is nearest."""
+    lacking = {**STRIBECK, "joint:asymmetry": {"level_asymmetry": 0.2, "viscous_asymmetry": 0.0}}
+    rig = write(tmp_path, RIG.with_effects(lacking), seed=5)
+    with open_workshop(None, progress=False) as shop:
+        case = make_case(rig)
+        rough = rough_fit(case, shop.cancel)
+        fitter = under_noise_floor(case, rough, shop.pool, shop.cancel)
+        start = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
+        whole = fitter.fit(extended(rough.system, lacking), added=tuple(lacking), initial=start)
+        fitter, whole = renewed(fitter, whole, shop.pool)
+        for place in contest_each_place(fitter, whole, {}, shop):
+            assert place.round.screened[0].effect == place.holder.effect
+            assert place.holder.evidence_gain > 100.0

@@ -95,9 +95,10 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     if stored is not None and holder.evidence_gain > KEPT * stored.holder.evidence_gain:
         return stored
     label = f"instead of {effect}"
-    screened = [] if others.exploded else shop.screen_all(fitter, others, label)  # nothing follows from such slopes
+    under = fitter.left_by(others)
+    screened = [] if others.exploded else shop.screen_all(under, others, label)  # nothing follows from such slopes
     promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
-    refitted = shop.refit_all(fitter, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
+    refitted = shop.refit_all(under, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
     trials = refitted.trials
 
     def establishes(t: Trial) -> bool:
@@ -143,7 +144,8 @@ def improve(
 
 def _rival_and_one_more(fitter: Fitter, base: Fitted, rival: Trial, places: Places, shop: Workshop) -> Improved | None:
     """The model of `rival` with one effect more, where that is clearly better than `base`."""
-    round_ = next_effect(fitter, rival.fitted, largest_gain=largest_gain(places), shop=shop)
+    under = fitter.left_by(rival.fitted)
+    round_ = next_effect(under, rival.fitted, largest_gain=largest_gain(places), shop=shop)
     if round_ is None or round_.accepted is None:
         return None
     pair = round_.accepted.fitted
