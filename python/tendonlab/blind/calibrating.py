@@ -25,7 +25,7 @@ from tendonlab.diagnosis.answer.calibration import (
 from tendonlab.version import version
 
 from .reliability import Array, error_beyond_chance, reliability_line, too_far_off
-from .runner import REPORT
+from .runner import REPORT, VERDICTS
 
 LEAST_CASES = 20  # of a kind of rig, to confirm the map there
 FALSE = 1.96  # Spiegelhalter's z beyond which probabilities are false
@@ -55,14 +55,18 @@ class Judged:
 
 
 def judged(folders: Folders) -> list[Judged]:
-    """All cases that have a report with evidence; those that were refused as a fault of the data have none. Raises
-    ValueError where a truth has no report, or a report comes from a version that did not write evidence."""
+    """All cases that have a report with evidence; those that were refused as a fault of the data have none, nor have
+    those whose diagnosis failed. Raises ValueError where a truth has no report, or a report comes from a version that
+    did not write evidence."""
     return [case for sealed, reports in folders for case in _judged(Path(sealed), Path(reports))]
 
 
 def _judged(sealed: Path, reports: Path) -> Iterable[Judged]:
+    told = _told(reports)
     for path in sorted(sealed.glob("*.toml")):
         truth, report = tomllib.loads(path.read_text(encoding="utf-8")), reports / path.stem / REPORT
+        if told.get(path.stem) == "failed":
+            continue
         if not report.exists():
             raise ValueError(f"{report} is missing: expected a report of every case below {sealed}")
         found: dict[str, Any] = json.loads(report.read_text(encoding="utf-8"))
@@ -81,6 +85,14 @@ def _judged(sealed: Path, reports: Path) -> Iterable[Judged]:
             told=found["verdict"],
             runs=len(found["split"]["train"]),
         )
+
+
+def _told(reports: Path) -> dict[str, str]:
+    """The verdict of every case that was run, or "failed"."""
+    path = reports / VERDICTS
+    if not path.exists():
+        return {}
+    return {name: of["verdict"] for name, of in json.loads(path.read_text(encoding="utf-8"))["reports"].items()}
 
 
 def fitted(cases: Sequence[Judged]) -> Calibration:
@@ -138,9 +150,17 @@ def _truth_of(stated: Iterable[tuple[float, bool]]) -> dict[str, float]:
 
 def results_on(cases: Sequence[Judged], of: Calibration) -> dict[str, dict[str, float]]:
     """How true the probabilities of the verdicts that were told, and of all effects, are on these cases."""
-    verdicts = [(of.of_verdicts(case.verdicts)[case.told], case.told == case.verdict) for case in cases]
-    events = [event for case in cases for event in case.events()]
-    return {"verdicts": _truth_of(verdicts), "effects": _truth_of(_tempered(events, of.effects))}
+    return {"verdicts": _truth_of(stated_verdicts(cases, of)), "effects": _truth_of(stated_effects(cases, of))}
+
+
+def stated_verdicts(cases: Sequence[Judged], of: Calibration) -> list[tuple[float, bool]]:
+    """The probability of each verdict that was told, and whether that is the true one."""
+    return [(of.of_verdicts(case.verdicts)[case.told], case.told == case.verdict) for case in cases]
+
+
+def stated_effects(cases: Sequence[Judged], of: Calibration) -> list[tuple[float, bool]]:
+    """The probability of each effect of each case, and whether the effect is there."""
+    return _tempered([event for case in cases for event in case.events()], of.effects)
 
 
 def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:
@@ -151,13 +171,13 @@ def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:
     content: dict[str, Any] = {"format": FORMAT, "tendonlab": version()}
     for name, repeats in (("with repeats", True), ("without repeats", False)):
         mine, others = ([case for case in given if case.repeats == repeats] for given in (cases, tests))
-        numbers = {kind: len(of) for kind, of in _by_system(mine).items()} or shipped_content()[name]["fitted on"]
+        numbers = {kind: len(of) for kind, of in by_system(mine).items()} or shipped_content()[name]["fitted on"]
         content[name] = _one_map(fitted(mine) if mine else shipped(repeats=repeats), numbers, others)
     return content
 
 
 def _one_map(found: Calibration, numbers: Mapping[str, int], tests: Sequence[Judged]) -> dict[str, Any]:
-    results = {kind: results_on(of, found) for kind, of in _by_system(tests).items()}
+    results = {kind: results_on(of, found) for kind, of in by_system(tests).items()}
     return {
         "map": {"verdicts": asdict(found.verdicts), "effects": asdict(found.effects)},
         "fitted on": dict(numbers),
@@ -171,5 +191,5 @@ def _confirms(results: Mapping[str, Mapping[str, float]]) -> bool:
     return results["verdicts"]["number"] >= LEAST_CASES and all(abs(of["z"]) < FALSE for of in results.values())
 
 
-def _by_system(cases: Sequence[Judged]) -> dict[str, list[Judged]]:
+def by_system(cases: Sequence[Judged]) -> dict[str, list[Judged]]:
     return {kind: [case for case in cases if case.system == kind] for kind in sorted({case.system for case in cases})}

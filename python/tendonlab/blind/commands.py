@@ -1,4 +1,4 @@
-"""`tendonlab blind draw|run|follow|score|calibrate`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|follow|score|results|calibrate`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|calibrate")
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|results|calibrate")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -56,6 +56,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     scoring.add_argument("reports", type=Path, metavar="REPORTS")
     scoring.add_argument("--csv", type=Path, help="write one row per case here")
     scoring.add_argument("--json", type=Path, help="write summary and cases here")
+    _add_results(verbs)
     _add_calibrate(verbs)
 
 
@@ -80,13 +81,31 @@ def _add_drawn(drawing: argparse.ArgumentParser) -> None:
     drawing.add_argument("--second", type=float, nargs=2, metavar=ends, help=text)
 
 
+SERIES: dict[str, Any] = {"type": Path, "nargs": 2, "action": "append", "metavar": ("SEALED", "REPORTS")}
+
+
+def _add_results(verbs: Any) -> None:
+    text = "write the page of results of one series or several: shares, figures and every wrong answer"
+    parser = _verb(verbs, "results", _results, text)
+    parser.add_argument("--on", required=True, help="diagnosed cases; may be given several times", **SERIES)
+    parser.add_argument("--out", type=Path, required=True, help="folder of blind-results.md and its figures")
+
+
+def _results(given: argparse.Namespace) -> int:
+    from .results import results
+    from .results_page import write
+
+    series = " ".join(f"--on {sealed} {reports}" for sealed, reports in given.on)
+    print(write(results(given.on), given.out, f"tendonlab blind results {series} --out {given.out}"))
+    return 0
+
+
 def _add_calibrate(verbs: Any) -> None:
     text = "fit the map from evidence to probability on diagnosed cases whose truth is open, or test the shipped one"
     parser = _verb(verbs, "calibrate", _calibrate, text)
-    pair: dict[str, Any] = {"type": Path, "nargs": 2, "action": "append", "metavar": ("SEALED", "REPORTS")}
     text = "cases to fit; may be given several times (default: none, the shipped map stays)"
-    parser.add_argument("--on", default=[], help=text, **pair)
-    parser.add_argument("--test", default=[], help="other cases, which confirm the map or not", **pair)
+    parser.add_argument("--on", default=[], help=text, **SERIES)
+    parser.add_argument("--test", default=[], help="other cases, which confirm the map or not", **SERIES)
     parser.add_argument("--out", type=Path, required=True, help="file to write, calibration.json")
 
 
@@ -146,7 +165,7 @@ def _score(given: argparse.Namespace) -> int:
 
 
 def main() -> int:
-    """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|follow|score|calibrate."""
+    """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|follow|score|results|calibrate."""
     text = "check the diagnosis on synthetic rigs whose truth is sealed"
     parser = argparse.ArgumentParser(prog="python -m tendonlab.blind", description=text)
     _add_verbs(parser)

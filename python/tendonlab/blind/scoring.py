@@ -18,8 +18,9 @@ BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
 SURE = 0.8  # probability above which a report names an effect with confidence
 PAIRS = ("pair_both", "pair_one", "pair_wrong")
 FAULTS = ("fault_kind", "fault_signal")
-OF_TRUTH = ("true_probability", "covered")
-HITS = ("top1", "told_apart", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
+OF_TRUTH = ("true_probability", "covered", "ranked_share")
+HITS = ("top1", "told_apart", "established", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
+LARGEST_GROUP = 3  # effects that a report cannot tell apart, of which the true one counts as one of so many
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,12 +138,16 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
     names_it = report["verdict"] in ("effect", "unknown_effect") and first in selected
     there = [entry for entry, name in zip(ranked, names, strict=True) if name in right]
     known = [e for e, n in zip(ranked, names, strict=True) if n in truth["effects"] and n in selected]
-    told = known if truth.get("draw", {}).get("is_documented_form") else []
+    is_own_form = bool(truth.get("draw", {}).get("is_documented_form"))
+    told = known if is_own_form else []
+    whole = ("effect",) if is_own_form else ("effect", "unknown_effect")
     return found | {
         "true_probability": min(1.0, sum(float(entry["probability"]) for entry in there)),
         "covered": _covered(told[0], truth.get("truth", {})) if told else np.nan,
         "top1": first in right and names_it,
+        "established": bool(selected) and right.issuperset(selected) and report["verdict"] in whole,
         "ranked_first": first in right,
+        "ranked_share": _ranked_share(report, first, right),
         "told_apart": first in right and names_it and not _tied(report, first) - right,
         "top3": bool(right & set(names[:3])),
         "class_hit": _part(first, 2) in {_part(name, 2) for name in right},
@@ -176,6 +181,14 @@ def _fault(fault: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, obj
 def _tied(report: Mapping[str, Any], effect: str) -> set[str]:
     """What the data cannot tell from an effect."""
     return {str(name) for group in report.get("indistinguishable", []) if effect in group for name in group}
+
+
+def _ranked_share(report: Mapping[str, Any], first: str, right: set[str]) -> float:
+    """1 where the first effect is right; 1/size where the first one's group, of at most three, holds a right one."""
+    group = _tied(report, first)
+    if first in right:
+        return 1.0
+    return 1.0 / len(group) if group & right and len(group) <= LARGEST_GROUP else 0.0
 
 
 def _part(name: str, index: int) -> str:

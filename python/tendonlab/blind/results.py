@@ -1,0 +1,145 @@
+"""What several scored series say together: every share with its number of cases and its interval."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from tendonlab.rehearsal.tally import Share, share
+
+from .calibrating import Folders, Judged, judged
+from .scoring import SURE, score
+
+STRONG, WEAK = 3.0, 1.0  # gap/noise from which an effect is strong, and below which no more is asked than is there
+CLOSE = 0.95  # shrinkage of the gap that is as good as that of the true effect, which shrinks it by 1
+
+
+class Row(NamedTuple):
+    """A quantity: what is counted, in which of the cases."""
+
+    quantity: str
+    column: str
+    among: Callable[[pd.DataFrame], pd.Series]
+
+
+def _between(least: float, below: float = np.inf) -> Callable[[pd.DataFrame], pd.Series]:
+    return lambda cases: cases["gap_noise"].astype(float).between(least, below, inclusive="left")
+
+
+def _unknown(least: float, below: float = np.inf) -> Callable[[pd.DataFrame], pd.Series]:
+    return lambda cases: (cases["truth"] == "unknown_effect") & _between(least, below)(cases)
+
+
+def _everywhere(cases: pd.DataFrame) -> pd.Series:
+    return pd.Series(True, index=cases.index)
+
+
+ROWS = (
+    Row("single effect established, nothing beside it, gap/noise ≥ 3", "established", _between(STRONG)),
+    Row("the same, gap/noise 1–3", "established", _between(WEAK, STRONG)),
+    Row("the same, gap/noise < 1", "established", _between(0.0, WEAK)),
+    Row("ranked first, gap/noise ≥ 1", "ranked_first", _between(WEAK)),
+    Row("an effect named where none is missing", "named", _everywhere),
+    Row("something unknown claimed where nothing is missing", "claimed", _everywhere),
+    Row("unknown cause found, gap/noise ≥ 3", "unknown_hit", _unknown(STRONG)),
+    Row("unknown cause found, gap/noise 1–3", "unknown_hit", _unknown(WEAK, STRONG)),
+    Row("unknown cause found, all strengths", "unknown_hit", _unknown(0.0)),
+    Row(f"unknown cause told as an effect with P > {SURE}", "unknown_named", _unknown(0.0)),
+    Row("pair: both established", "pair_both", _everywhere),
+    Row("pair: at least one established", "pair_one", _everywhere),
+    Row("mistake in the logs: right kind", "fault_kind", _everywhere),
+    Row("mistake in the logs: right signal or run", "fault_signal", _everywhere),
+    Row("right logs refused", "blocked", _everywhere),
+    Row("verdict right", "verdict_hit", _everywhere),
+    Row(f"held-out gap shrinks by at least {CLOSE}, library's own form, gap/noise ≥ 3", "close", _between(STRONG)),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Results:
+    """`cases`: one row per case of all series, as `Score.cases`, and whether an effect was `named` or something unknown
+    `claimed` where nothing is missing. `judged`: the cases whose probabilities count."""
+
+    cases: pd.DataFrame
+    judged: tuple[Judged, ...]
+
+    @property
+    def parts(self) -> dict[str, pd.DataFrame]:
+        """The cases without and with repeats."""
+        repeats = self.cases["repeats"].astype(bool)
+        return {"without repeats": self.cases[~repeats], "with repeats": self.cases[repeats]}
+
+    def shares(self) -> dict[str, list[Share]]:
+        """Each quantity of `ROWS` without and with repeats; those that no case concerns are left out."""
+        counted = {row.quantity: [_count(part, row) for part in self.parts.values()] for row in ROWS}
+        return {quantity: both for quantity, both in counted.items() if any(one.num for one in both)}
+
+    def by_system(self) -> dict[str, list[Share]]:
+        """Of each system and part: the share of right verdicts."""
+        row = next(row for row in ROWS if row.column == "verdict_hit")
+        systems = sorted(self.cases["system"].unique())
+        return {s: [_count(part[part["system"] == s], row) for part in self.parts.values()] for s in systems}
+
+    def means(self) -> dict[str, list[tuple[float, int]]]:
+        """Means, each with its number of cases, without and with repeats."""
+
+        def mean(column: str, least: float) -> list[tuple[float, int]]:
+            values = [part[column][_between(least)(part)].dropna() for part in self.parts.values()]
+            return [(float(of.mean()) if len(of) else float("nan"), len(of)) for of in values]
+
+        return {
+            "probability of the true effect, its twins included, gap/noise ≥ 1": mean("true_probability", WEAK),
+            "ranked first, a group of at most three counted as 1/size, gap/noise ≥ 1": mean("ranked_share", WEAK),
+            "share of the effects' parameters whose 95 % interval holds the truth": mean("covered", 0.0),
+        }
+
+    def confusion(self) -> pd.DataFrame:
+        """True verdicts in rows, told ones in columns: counts."""
+        return pd.crosstab(self.cases["truth"], self.cases["verdict"])
+
+    def single(self) -> pd.DataFrame:
+        """The cases with one missing effect of the library."""
+        return self.cases[self.cases["established"].notna()]
+
+    def misses(self) -> pd.DataFrame:
+        """The cases that were answered wrongly, the strongest first."""
+        checks = ("established", "verdict_hit", "pair_both", "fault_signal")
+        columns = [self.cases[name].astype(float) for name in checks]
+        # Of each case the strictest check that concerns it.
+        right = columns[0].combine_first(columns[2]).combine_first(columns[3]).combine_first(columns[1])
+        return self.cases[right < 1.0].sort_values("gap_noise", ascending=False, na_position="last")
+
+
+def _count(cases: pd.DataFrame, row: Row) -> Share:
+    values = cases[row.column][row.among(cases)].dropna()
+    return share(int(values.sum()), len(values))
+
+
+def results(folders: Folders) -> Results:
+    """The results of several series, each a folder of truths and one of reports. Raises ValueError as `score` and
+    `judged` do, and where no series is given."""
+    if not folders:
+        raise ValueError("no series: expected at least one folder of truths with its folder of reports")
+    series = [_scored(sealed, reports) for sealed, reports in folders]
+    return Results(cases=pd.concat(series), judged=tuple(judged(folders)))
+
+
+def _scored(sealed: Path, reports: Path) -> pd.DataFrame:
+    cases = score(sealed, reports).cases
+    cases.index = [f"{sealed.name}/{name}" for name in cases.index]
+    nothing = cases["false_alarm"].notna()
+    cases["named"] = _only((cases["selected"] != "") | cases["failed"].astype(bool), nothing)
+    cases["claimed"] = _only((cases["selected"] == "") & (cases["verdict"] == "unknown_effect"), nothing)
+    own = cases["established"].notna() & cases["is_documented_form"].eq(True)
+    cases["close"] = _only(cases["shrinkage"] >= CLOSE, own)
+    return cases
+
+
+def _only(values: pd.Series, where: pd.Series) -> pd.Series:
+    """`values` as numbers, NaN elsewhere."""
+    return values.astype(float).where(where)

@@ -1,0 +1,128 @@
+"""The page of several blind series: what it counts, on truths and reports that are stated here."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tendonlab.blind.commands import main
+from tendonlab.blind.results import Results, results
+from tendonlab.blind.results_page import PAGE, write
+from tendonlab.blind.runner import REPORT, VERDICTS
+
+EFFECTS = ("joint:stribeck", "joint:presliding", "load:offset")
+
+
+def truth(verdict: str, *effects: str, gap: float, repeats: bool = False, cause: str = "", own: bool = True) -> Any:
+    draw = {"system": "rigid_joint", "gap_noise": gap, "repeats": repeats, "is_documented_form": own}
+    named = {"cause": cause} if cause else {}
+    return {"verdict": verdict, "effects": list(effects), "accept": [], "draw": {**draw, **named}}
+
+
+def report(verdict: str, *selected: str, probability: float = 0.9, tied: tuple[str, ...] = ()) -> Any:
+    ranked = [*selected, *(name for name in EFFECTS if name not in selected)]
+    chances = {name: probability if name in selected else 0.02 for name in ranked}
+    entries = [
+        {"element": name.partition(":")[0], "effect": name.partition(":")[2], "probability": p, "parameters": {}}
+        for name, p in chances.items()
+    ]
+    evidence = {"verdict": {"effect": 0.1, "unknown_effect": 0.05, verdict: 0.85}, "effects": chances}
+    shrunk = {"from_refitted": {"value": 0.97 if selected else None}}
+    return {
+        "verdict": verdict, "selected": list(selected), "effects": entries, "indistinguishable": [list(tied)],
+        "shrinkage": shrunk, "details": {"evidence": evidence}, "split": {"train": ["a", "b"]}, "seconds": 1.0,
+    }  # fmt: skip
+
+
+SERIES: dict[str, tuple[Any, Any]] = {
+    "strong": (truth("effect", "joint:stribeck", gap=8.0), report("effect", "joint:stribeck")),
+    "beside": (truth("effect", "joint:stribeck", gap=4.0), report("effect", "joint:stribeck", "load:offset")),
+    "partly": (truth("effect", "joint:stribeck", gap=5.0, own=False), report("unknown_effect", "joint:stribeck")),
+    "weak": (truth("effect", "load:offset", gap=1.5), report("effect", "joint:stribeck", tied=EFFECTS)),
+    "nothing": (truth("no_gap", gap=0.0), report("no_gap")),
+    "alarm": (truth("parameters_only", gap=0.0), report("effect", "load:offset")),
+    "creeps": (truth("unknown_effect", gap=6.0, repeats=True, cause="creep"), report("unknown_effect")),
+    "fools": (truth("unknown_effect", gap=2.0, repeats=True, cause="stop"), report("effect", "load:offset")),
+    "crash": (truth("unknown_effect", gap=9.0, repeats=True, cause="creep"), None),
+}
+
+
+@pytest.fixture
+def folders(tmp_path: Path) -> tuple[Path, Path]:
+    sealed, reports = tmp_path / "seed-1", tmp_path / "reports"
+    sealed.mkdir()
+    told = {}
+    for name, (true, given) in SERIES.items():
+        lines = ['format = "tendonlab-sealed/1"', f'verdict = "{true["verdict"]}"']
+        lines += [f"{key} = {json.dumps(true[key])}" for key in ("effects", "accept")]
+        lines += ["[draw]", *(f"{key} = {json.dumps(value)}" for key, value in true["draw"].items())]
+        (sealed / f"{name}.toml").write_text("\n".join(lines), encoding="utf-8")
+        if given is None:
+            told[name] = {"verdict": "failed"}
+            continue
+        (reports / name).mkdir(parents=True)
+        text = json.dumps(given)
+        (reports / name / REPORT).write_text(text, encoding="utf-8")
+        told[name] = {"verdict": given["verdict"], "sha256": hashlib.sha256(text.encode()).hexdigest()}
+    (reports / VERDICTS).write_text(json.dumps({"reports": told}), encoding="utf-8")
+    return sealed, reports
+
+
+@pytest.fixture
+def found(folders: tuple[Path, Path]) -> Results:
+    return results([folders])
+
+
+def test_each_share_counts_the_cases_that_it_concerns(found: Results) -> None:
+    counts = {q: [(one.hits, one.num) for one in both] for q, both in found.shares().items()}
+    assert counts["single effect established, nothing beside it, gap/noise ≥ 3"] == [(2, 3), (0, 0)]
+    assert counts["the same, gap/noise 1–3"] == [(0, 1), (0, 0)]
+    assert counts["ranked first, gap/noise ≥ 1"] == [(3, 4), (0, 0)]
+    assert counts["an effect named where none is missing"] == [(1, 2), (0, 0)]
+    assert counts["unknown cause found, gap/noise ≥ 3"] == [(0, 0), (1, 2)]  # a crash is wrong
+    assert counts["unknown cause found, gap/noise 1–3"] == [(0, 0), (0, 1)]
+    assert counts["unknown cause told as an effect with P > 0.8"] == [(0, 0), (2, 3)]
+    assert counts["verdict right"] == [(4, 6), (1, 3)]
+    assert "pair: both established" not in counts  # none was drawn
+
+
+def test_the_effect_of_a_group_of_three_counts_a_third(found: Results) -> None:
+    mean, num = found.means()["ranked first, a group of at most three counted as 1/size, gap/noise ≥ 1"][0]
+    assert (mean, num) == (pytest.approx((3 + 1 / 3) / 4), 4)
+
+
+def test_misses_are_those_whose_strictest_check_fails(found: Results) -> None:
+    """A right effect of another form is no miss where something is left over; a right one with a wrong one is."""
+    names = [name.partition("/")[2] for name in found.misses().index]
+    assert names == ["crash", "beside", "fools", "weak", "alarm"]
+
+
+def test_the_page_holds_tables_figures_and_misses(folders: tuple[Path, Path], tmp_path: Path) -> None:
+    out = tmp_path / "docs"
+    page = write(results([folders]), out, "tendonlab blind results")
+    assert page == out / PAGE
+    text = page.read_text(encoding="utf-8")
+    assert "| verdict right | 4 of 6 (22–96 %) | 1 of 3 (1–91 %) |" in text
+    assert "| seed-1/crash | rigid_joint | yes | creep | 9 | failed | – |" in text
+    for name in ("blind-reliability", "blind-strength"):
+        assert (out / "figures" / f"{name}.svg").is_file()
+        assert f"figures/{name}.svg" in text
+
+
+def test_the_command_takes_several_series(
+    folders: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pair = ["--on", *map(str, folders)]
+    monkeypatch.setattr("sys.argv", ["blind", "results", *pair, *pair, "--out", str(tmp_path / "out")])
+    assert main() == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "out" / PAGE)
+    assert "18 rigs" in (tmp_path / "out" / PAGE).read_text(encoding="utf-8")
+
+
+def test_no_series_is_an_error() -> None:
+    with pytest.raises(ValueError, match="no series: expected at least one"):
+        results([])
