@@ -10,6 +10,7 @@ from functools import partial
 
 from tendonlab import _core
 from tendonlab.diagnosis.search.bristles import trouble_with_bristles
+from tendonlab.diagnosis.search.delays import trouble_with_delays
 from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
@@ -116,7 +117,8 @@ def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) ->
     try:
         started = candidate if candidate.far_behind else with_whole_shares(fitter, base, candidate)
         fit = refit(fitter, base, started, pace=pace)
-        trouble = trouble_with_bristles(fitter.case, fit, candidate.effect)
+        told = (fitter.case, fit, candidate.effect)
+        trouble = trouble_with_bristles(*told) or trouble_with_delays(*told)
     except (NumericalError, ParameterError) as reason:
         return Failed(candidate.effect, str(reason))
     return Failed(candidate.effect, trouble) if trouble else Trial.of(candidate.effect, fit, base)

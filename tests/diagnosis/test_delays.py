@@ -1,0 +1,35 @@
+"""Delays that are shorter than stamps can tell are no answer."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendonlab.diagnosis.search.delays import LEAST, trouble_with_delays
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
+
+NAME = "actuation:delay"
+
+
+def delayed(fitter: Fitter, steps: float) -> Fitted:
+    """The bundled rig with its command late by so many steps of its logs."""
+    step = float(np.median(np.diff(fitter.case.experiments[0].time)))
+    system = fitter.case.system.with_effects({NAME: {"delay": steps * step}})
+    return fitter.fit(system, added=(NAME,), solve=False)
+
+
+@pytest.mark.parametrize(("steps", "is_told"), [(0.2 * LEAST, False), (2.0 * LEAST, True)])
+def test_a_delay_counts_from_a_part_of_a_step_on(fitter: Fitter, steps: float, is_told: bool) -> None:
+    assert (trouble_with_delays(fitter.case, delayed(fitter, steps), NAME) == "") is is_told
+
+
+def test_logs_that_were_thinned_had_finer_stamps(fitter: Fitter) -> None:
+    case: Case = fitter.case
+    thinned = replace(case, experiments=tuple(replace(e, averaged=True) for e in case.experiments))
+    assert trouble_with_delays(thinned, delayed(fitter, 0.2 * LEAST), NAME) == ""
+
+
+def test_other_effects_have_no_delay(fitter: Fitter, nominal: Fitted) -> None:
+    assert trouble_with_delays(fitter.case, nominal, "joint:stribeck") == ""
