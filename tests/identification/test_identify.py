@@ -58,6 +58,15 @@ def rig(*experiments: Experiment, seed: int = 1, **nominal: NominalParameter) ->
     )  # fmt: skip
 
 
+def test_of_runs_whose_initial_state_is_known_or_not_each_may_be_among_the_others() -> None:
+    """Fits of initial states alone, which come first, have nothing to fit in a run that states its own."""
+    known, *others = rig().experiments
+    found = identify(rig(known, *(replace(e, initial={}) for e in others)), progress=False)
+    assert found.converged, found.message
+    for name, value in found.values.items():
+        assert abs(value - TRUE[name]) < 4 * found.parameters["sd"][name]
+
+
 @pytest.fixture(scope="module")
 def fit() -> Any:
     return identify(rig(), progress=False)

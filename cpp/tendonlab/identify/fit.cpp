@@ -344,10 +344,11 @@ Result fit(const Problem& problem, const Options& options) {
     std::vector<double*> blocks;
     if (x.size() > 0) blocks.push_back(x.data());
     if (z[e].size() > 0) blocks.push_back(z[e].data());
-    if (blocks.empty())
-      throw ParameterError("free: none; expected at least one free parameter or initial state a task");
+    if (blocks.empty()) continue;  // nothing moves this experiment
     solved.AddResidualBlock(new TaskCost(predictions[e], options.cancel, thrown), nullptr, blocks);
   }
+  if (solved.NumResidualBlocks() == 0)
+    throw ParameterError("free: none; expected at least one free parameter or initial state");
   add_priors(problem, x, z, solved);
   add_bounds(problem, x, solved);
   silence_log();

@@ -20,6 +20,8 @@ def samples(
     with any value outside its bounds is rejected and drawn anew. `sd`: of the values.
 
     Raises NumericalError where hardly any draw is within the bounds."""
+    if not free:
+        return np.empty((num, 0))
     centre = np.array([f.coordinate(v) for f, v in zip(free, value, strict=True)])
     width = np.array([s / f.slope(x) for f, s, x in zip(free, sd, centre, strict=True)])
     covariance = width[:, None] * correlations * width
