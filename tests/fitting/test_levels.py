@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import tendonlab as tl
@@ -159,10 +160,22 @@ def test_shares_are_those_of_each_output_alone(nominal: Fitted) -> None:
 
 
 def test_records_of_a_single_block_are_halved_in_time() -> None:
-    """Whatever the length of a record, both halves hold samples of every experiment, and no sample is in both."""
+    """Whatever the length of a record, both halves hold samples of every experiment, and no sample is in both. Nor
+    where all that was measured lies in one block of two."""
     rig = tl.load(bundled())
     short = tuple(replace(e, data=e.data.iloc[:500]) for e in rig.experiments)
-    case = make_case(replace(rig, experiments=short))
+    lost = [e.data.iloc[:2200].copy() for e in rig.experiments]
+    for frame in lost:
+        frame.loc[frame.index[1000:], rig.outputs] = np.nan
+    assert_halved(make_case(replace(rig, experiments=short)))
+    assert_halved(make_case(replace(rig, experiments=tuple(map(with_data, rig.experiments, lost)))))
+
+
+def with_data(experiment: tl.Experiment, data: pd.DataFrame) -> tl.Experiment:
+    return replace(experiment, data=data)
+
+
+def assert_halved(case: Any) -> None:
     for odd, even in zip(case.on_half(odd=True).prepared, case.on_half(odd=False).prepared, strict=True):
         first, second = np.isfinite(odd.measured[0]), np.isfinite(even.measured[0])
         assert first.sum() == second.sum() > 0

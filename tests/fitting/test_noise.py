@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 
 from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError
-from tendonlab.fitting.floor import LARGEST, _run_to_run, friction_groups
+from tendonlab.fitting.floor import LARGEST, _autoregression, _run_to_run, friction_groups
 from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, sensor_noise
 from tendonlab.simulation.prepare import Replay, prepare
 
@@ -130,3 +130,30 @@ def test_friction_that_scales_from_run_to_run_stays_within_its_bounds(twin_case:
     assert values[k] == 1.0
     values, _ = case.at(i, strong, [*case.prepared[i].initial_mean, 0.0, -0.2])
     assert values[k] == pytest.approx(0.99 * np.exp(-0.2))
+
+
+COLOURED = lfilter([1.0], [1.0, -0.8], np.random.default_rng(5).normal(size=20_000))  # innovations of sd 1
+
+
+SCATTERED = np.random.default_rng(6).random(20_000) < 0.05
+
+
+@pytest.mark.parametrize("lost", [slice(10_000, None), slice(5_000, 9_000), SCATTERED])
+def test_samples_that_were_not_measured_do_not_lower_the_noise(lost: Any) -> None:
+    record = COLOURED.copy()
+    record[lost] = np.nan
+    ar, innovation = _autoregression([record])
+    assert innovation == pytest.approx(1.0, rel=0.05)
+    assert ar[0] == pytest.approx(0.8, abs=0.05)
+
+
+def test_noise_is_taken_as_white_where_samples_stand_alone() -> None:
+    """At every second stamp no sample follows on six others, and no colour can be told."""
+    record = COLOURED.copy()
+    record[::2] = np.nan
+    ar, sd = _autoregression([record])
+    assert ar == []
+    assert sd == pytest.approx(np.nanstd(record))
+    floor = Floor(np.array([sd]), [[0.8]], [1.0], 0.0, repeated=True)
+    measured = record[None, :200]
+    assert len(floor.whitening(measured).residual(np.zeros((1, 200)))) == np.isfinite(measured).sum()

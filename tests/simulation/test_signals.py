@@ -66,7 +66,13 @@ def test_white_noise_is_seen_beneath_smooth_motion() -> None:
 
 def start(**more: object) -> Start:
     """A measured motor that drives a joint, which was not measured."""
-    given = {"follows": (0, 0, None), "motion": {0: (0.4, 2.0, 3.0)}, "sensor": {0: 1}, "position": {}, "velocity": {}}
+    given = {
+        "follows": (0, 0, None),
+        "motion": {0: (0.4, 2.0, 0.3, 2.0)},
+        "sensor": {0: 1},
+        "position": {},
+        "velocity": {},
+    }
     given |= {"reading": (), "reading_sd": {}}
     return Start(**{**given, **more})  # type: ignore[arg-type]
 
@@ -98,12 +104,12 @@ def test_a_stated_start_counts_where_nothing_was_measured() -> None:
     np.testing.assert_allclose(velocity, [0.0, -1.0, 0.0])
 
 
-def test_the_start_is_known_to_a_tenth_of_the_travel_and_to_its_speed() -> None:
+def test_the_start_is_known_as_well_as_the_measured_axis_tells() -> None:
     found = dict(zip(*start().nuisances(RIGID), strict=True))
     assert found == pytest.approx(
         {("position", 0): 0.3, ("velocity", 0): 2.0, ("position", 1): 0.15, ("velocity", 1): 1.0}
     )
-    resting = start(motion={0: (0.4, 0.0, 3.0)})
+    resting = start(motion={0: (0.4, 0.0, 0.3, 0.0)})
     assert [name for name, _ in resting.nuisances(RIGID)[0]] == ["position", "position"]
 
 

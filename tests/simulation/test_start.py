@@ -24,7 +24,7 @@ def test_a_measured_axis_begins_where_it_is_and_the_other_one_follows_it() -> No
     """Its travel is from the least to the largest angle, wherever zero is."""
     found = begun(motor_angle=3.0 + 0.5 * TIME)
     assert (found.follows, found.is_rigid) == ((0, 0), True)
-    assert found.motion[0] == pytest.approx((3.0, 0.5, 0.5 * TIME[-1]))
+    assert found.motion[0] == pytest.approx((3.0, 0.5, 0.05 * TIME[-1], 0.5))
     position, velocity = found.state(ALONE)
     assert position == pytest.approx([3.0, 0.3])
     assert velocity == pytest.approx([0.5, 0.05])
@@ -38,6 +38,18 @@ def test_the_only_measured_axis_may_be_the_second_one() -> None:
     assert found.follows == (1, 1)
     assert found.state(ALONE)[0] == pytest.approx([2.0, 0.2])
     assert found.nuisances(ALONE) == ((), ())  # at rest
+
+
+def test_an_axis_that_is_measured_late_may_have_come_from_anywhere() -> None:
+    """A parabola through noisy samples, carried on over a second, would lead far from every place that was seen."""
+    noisy = 0.3 * np.sin(2.0 * TIME) + 1e-3 * np.random.default_rng(4).normal(size=len(TIME))
+    noisy[TIME < 1.0] = np.nan
+    found = begun(motor_angle=noisy)
+    position, velocity, position_sd, velocity_sd = found.motion[0]
+    assert position == pytest.approx(0.3 * np.sin(2.0), abs=5e-3)
+    assert position_sd == pytest.approx(np.nanmax(noisy) - np.nanmin(noisy))
+    assert velocity_sd >= abs(velocity)
+    assert velocity_sd >= position_sd / 1.0
 
 
 def test_where_both_were_measured_no_shape_is_needed() -> None:

@@ -26,7 +26,7 @@ PATIENT = 300_000  # attempts that no simulator needs in an experiment, unless i
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
-START = 0.2  # s of an experiment from which its initial state is estimated
+START = 0.2  # s of the first measured part of an experiment, from which its initial state is estimated
 
 
 @dataclass(frozen=True)
@@ -66,25 +66,29 @@ class Case:
         return replace(self, experiments=tuple(chosen))
 
     def on_half(self, *, odd: bool) -> Case:
-        """The same case with every other block of 2 s of each experiment measured, the odd or the even ones. Of an
-        experiment that is a single block, the first or the second half."""
+        """The same case with every other block of 2 s of each experiment measured, the odd or the even ones. Where one
+        of these would hold no sample, as of a single block, the first or the second half of the samples."""
 
         def half(i: int, ready: Prepared) -> Prepared:
             blocks = blocks_of(self.experiments[i].time)
-            if not blocks.any():
-                blocks = 2 * np.arange(len(blocks)) // len(blocks)
+            there = np.isfinite(ready.measured).any(axis=0)
+            if len(np.unique(blocks[there] % 2)) < 2:
+                blocks = 2 * (np.cumsum(there) - 1) // max(np.count_nonzero(there), 1)
             kept = (blocks + i) % 2 == odd
             return replace(ready, measured=np.where(kept, ready.measured, np.nan))
 
         return replace(self, prepared=tuple(half(i, ready) for i, ready in enumerate(self.prepared)))
 
     def beginning(self, i: int) -> Case:
-        """The first 0.2 s of experiment i alone, to fit, without run-to-run factors."""
+        """The first 0.2 s of experiment i alone, to fit, without run-to-run factors; where no output is measured there
+        at once, until 0.2 s after one is."""
         ready, experiment = self.prepared[i], self.experiments[i]
-        time = experiment.time
-        num = min(max(8, int(np.searchsorted(time - time[0], START))), len(time))
-        first = replace(ready, core=ready.core.until(num), measured=ready.measured[:, :num])
-        return replace(self, experiments=(replace(experiment, split="train"),), prepared=(first,), scatter=())
+        time = experiment.time - experiment.time[0]
+        first = int(np.argmax(np.isfinite(ready.measured).any(axis=0)))
+        first = first if time[first] > UNSEEN else 0
+        num = min(max(first + 8, int(np.searchsorted(time, time[first] + START))), len(time))
+        begun = replace(ready, core=ready.core.until(num), measured=ready.measured[:, :num])
+        return replace(self, experiments=(replace(experiment, split="train"),), prepared=(begun,), scatter=())
 
     @property
     def outputs(self) -> list[str]:

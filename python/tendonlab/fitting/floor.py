@@ -16,7 +16,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, Floor, rounding_of
+from tendonlab.fitting.noise import FOLLOWING, RUN_TO_RUN, RUN_TO_RUN_UNKNOWN, Floor, num_following, rounding_of
 from tendonlab.simulation.system import System
 
 AR_ORDER = 6
@@ -34,6 +34,17 @@ class Sensitivities:
     residual: np.ndarray
     friction: np.ndarray
     initial: np.ndarray
+
+    @classmethod
+    def unknown(cls, measured: np.ndarray) -> Sensitivities:
+        """Of an experiment that could not be simulated, `measured` (outputs, samples)."""
+        nothing = np.zeros((0, *measured.shape))
+        return cls(np.full_like(measured, np.nan), nothing, nothing)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the experiment could be simulated and was measured."""
+        return bool(np.isfinite(self.residual).any())
 
 
 def friction_groups(system: System, *, with_added: bool = False) -> list[list[int]]:
@@ -83,7 +94,7 @@ def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -
     """The floor from repeats; where nothing repeats, from the residuals of the experiments `fitted` themselves."""
     groups: dict[str, list[int]] = {}
     for i, experiment in enumerate(case.experiments):
-        if experiment.repeat is not None:
+        if experiment.repeat is not None and seen[i].is_known:
             groups.setdefault(experiment.repeat, []).append(i)
     repeats = [
         g for g in groups.values() if len(g) > 1 and len(_shared([case.experiments[i].time for i in g])[0]) > AR_ORDER
@@ -107,7 +118,10 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
     ar: list[list[float]] = [[] for _ in case.noise]
     rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
     for c in case.measured:
-        cleaned = [d[c] for d, _ in pairs]
+        cleaned = [d[c] for d, _ in pairs if np.isfinite(d[c]).any()]
+        if not cleaned:  # the repeats do not measure this output
+            rms[c] = sd[c] = _assumed(case, seen, c)
+            continue
         ar[c], innovation = _autoregression(cleaned)
         rounding = rounding_of(case.dataset.signals[case.outputs[c]])
         shown = _rms([record - np.nanmean(record) for record in cleaned])
@@ -178,19 +192,25 @@ def _run_to_run(coefficients: list[np.ndarray]) -> float:
 
 
 def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
-    """Yule–Walker over several records: always stable. Missing samples count as zero. Nothing is left of zeros."""
-    from scipy.linalg import solve_toeplitz
+    """Yule–Walker over several records: always stable. Nothing is left of zeros. White where too few samples follow on
+    others, as where a sensor is read at every second stamp only, and where gaps leave no stable process."""
+    from scipy.linalg import eigvalsh, solve_toeplitz, toeplitz
 
-    lags = np.zeros(AR_ORDER + 1)
-    count = 0
+    lags, pairs, complete = np.zeros((3, AR_ORDER + 1))
+    rows = 0
     for record in records:
-        x = np.nan_to_num(record - np.nanmean(record))
-        count += len(x)
+        there = np.isfinite(record)
+        x = np.where(there, record - np.nanmean(record), 0.0)
         lags += [float(x[k:] @ x[: len(x) - k]) for k in range(AR_ORDER + 1)]
+        pairs += [np.count_nonzero(there[k:] & there[: len(x) - k]) for k in range(AR_ORDER + 1)]
+        complete += [len(x) - k for k in range(AR_ORDER + 1)]
+        rows += num_following(there, AR_ORDER)
     if not lags[0] > 0.0:
         return [], 0.0
-    lags /= count
+    lags *= complete / (complete[0] * np.maximum(pairs, 1.0))
     lags[0] *= 1 + 1e-9
+    if rows < FOLLOWING * pairs[0] or eigvalsh(toeplitz(lags)).min() <= 0.0:
+        return [], float(np.sqrt(lags[0]))
     a = np.asarray(solve_toeplitz(lags[:-1], lags[1:]))
     return a.tolist(), float(np.sqrt(max(lags[0] - a @ lags[1:], 1e-300)))
 

@@ -19,6 +19,7 @@ NEAR_FLOOR = 1.3  # whitened mean square below which a model is nearly at the fl
 RUN_TO_RUN = 0.008  # default sd of friction from run to run
 RUN_TO_RUN_UNKNOWN = 0.02  # the largest one that is plausible where nothing repeats
 SMALLEST = 1e-7  # of a record's spread: what single precision resolves
+FOLLOWING = 0.5  # share of the measured samples that must follow on others without a gap, to tell coloured noise
 BLOCK = 2.0  # s: residuals of a mechanism stay correlated for less
 
 
@@ -72,7 +73,22 @@ class Floor:
     ) -> _core.Whitening:
         """For one experiment, `measured` (outputs, samples); see `_core.Whitening`."""
         sd = [s if s > 0 and np.isfinite(row).any() else np.inf for s, row in zip(self.sd, measured, strict=True)]
-        return _core.Whitening(self.ar, sd, measured, directions, list(spread))
+        ar = list(self.ar)
+        for c, row in enumerate(measured):
+            if ar[c] and sd[c] < np.inf and np.isnan(row).any() and is_sparse(np.isfinite(row), len(ar[c])):
+                ar[c], sd[c] = [], float(self.rms[c])
+        return _core.Whitening(ar, sd, measured, directions, list(spread))
+
+
+def num_following(measured: np.ndarray, order: int) -> int:
+    """How many of the samples that were `measured` (samples,) follow on `order` others without a gap."""
+    return int(np.sum(np.convolve(measured, np.ones(order + 1), mode="valid") > order + 0.5))
+
+
+def is_sparse(measured: np.ndarray, order: int) -> bool:
+    """Whether so few of the samples that were `measured` follow on `order` others that noise is better taken as white,
+    as where a sensor is read at every second stamp."""
+    return num_following(measured, order) < FOLLOWING * int(np.count_nonzero(measured))
 
 
 def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared]) -> np.ndarray:

@@ -57,7 +57,7 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
 def missed_command(dataset: Dataset, system: System) -> float:
     """How far the stated controller's command is from the logged one: the rms of the difference over that of the
     command, the median over the training experiments. 0 where nothing can be compared: without controller, clock or
-    logs, or where the logs are sampled more slowly than the controller reads."""
+    logs, or where the logs are not sampled at the clock of the controller."""
     controller, shares = dataset.controller, []
     if controller is None or controller.sample_time <= 0 or not system.info.commanded:
         return 0.0

@@ -63,7 +63,7 @@ def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
 
 def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinned:
     """Every `factor`-th value, from a parabola fitted to the samples up to the next ones on both sides. NaN where fewer
-    than a third of those were measured."""
+    than two in five of those were measured, or fewer than three."""
     rows, times = _windows(values, factor), _windows(time, factor)
     enough = np.isfinite(rows).sum(axis=1) >= max(3.0, 0.8 * factor)
     rows, times = rows[enough], times[enough]

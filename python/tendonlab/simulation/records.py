@@ -63,7 +63,7 @@ class Experiment(EqualByFields):
     `conditions`: parameters fixed there, other names are covariates; `add`: known additions to parameters; `initial`:
     known initial values; `start`: when it began in the session, s; `repeat`: the label it shares with its repeats;
     `holds`: whether a signal is held between its samples; `averaged`: whether each sample of an input is its mean until
-    the next one."""
+    the next one; `num_repeated`: samples of the log that were left out because they repeat the time stamp before."""
 
     name: str
     data: pd.DataFrame = field(repr=False)
@@ -75,6 +75,7 @@ class Experiment(EqualByFields):
     initial: dict[str, float] = field(default_factory=dict)
     holds: dict[str, bool] = field(default_factory=dict, repr=False)
     averaged: bool = field(default=False, repr=False)
+    num_repeated: int = field(default=0, repr=False)
 
     @property
     def time(self) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tendonlab import _core
 
+AT_ONCE = 0.02  # s from the first sample, within which a signal shows how an experiment begins
 CLEAR = 4.0  # sd from 0 of a velocity or a curvature that is there
 ROUNDING = 1e-9  # of its range: a signal with less noise was computed, not measured
 
@@ -42,28 +43,36 @@ def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """A cubic spline near noisy samples, its smoothness chosen by generalised cross-validation; through them where they
     carry no noise, which leaves nothing to choose by."""
     kept = np.isfinite(values)
-    return _from_pieces(_spline_near(time[kept], values[kept]))
+    return _from_pieces(spline_near(time[kept], values[kept]))
 
 
 def sloped(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """A cubic through the samples that has there the slopes of `smoothed`: values as logged, slopes freed of noise."""
     from scipy.interpolate import CubicHermiteSpline
 
-    return _from_pieces(CubicHermiteSpline(time, values, _spline_near(time, values)(time, 1)))
+    return _from_pieces(CubicHermiteSpline(time, values, spline_near(time, values)(time, 1)))
 
 
 def first_samples(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """The measured samples of the first 20 ms (at least 8 samples)."""
+    """The samples of the first 20 ms that were measured (at least 8 samples)."""
     kept = np.isfinite(values)
-    return np.asarray(values[kept][: max(8, int(np.searchsorted(time[kept] - time[0], 0.02)))])
+    since = time[kept] - time[kept][0]
+    return np.asarray(values[kept][: max(8, int(np.searchsorted(since, AT_ONCE)))])
+
+
+def first_seen(time: np.ndarray, values: np.ndarray) -> float:
+    """Time after the first sample at which a signal was first measured, s."""
+    return float(time[np.isfinite(values)][0] - time[0])
 
 
 def motion_at_start(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """Position and velocity at the first sample, from a line through the first 20 ms (at least 8 samples), or from a
-    parabola where the motion is clearly curved there. A velocity within its uncertainty, or below 1 % of the record's
-    typical speed, is rest."""
+    """Position and velocity at the first sample, or where the signal was first measured if that is more than 20 ms
+    later. From a line through the first 20 ms measured (at least 8 samples), or from a parabola where the motion is
+    clearly curved there. A velocity within its uncertainty, or below 1 % of the record's typical speed, is rest."""
     kept = np.isfinite(values)
     t, y = time[kept] - time[0], values[kept]
+    if t[0] > AT_ONCE:
+        t = t - t[0]
     num = len(first_samples(time, values))
     if len(t) <= num:
         return float(np.mean(y[:num])), 0.0
@@ -115,7 +124,8 @@ def white_noise_sd(values: np.ndarray) -> float:
     return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
 
 
-def _spline_near(time: np.ndarray, values: np.ndarray) -> Any:
+def spline_near(time: np.ndarray, values: np.ndarray) -> Any:
+    """A cubic spline near noisy samples, through them where they carry no noise, as scipy has it."""
     from scipy.interpolate import CubicSpline
 
     from tendonlab.simulation.smoothing import smoothing_spline  # loads scipy

@@ -153,10 +153,12 @@ class System:
         return trajectory_of(run, self.info, axis=self.axis, time=record.time)
 
     def under(self, experiment: Experiment) -> System:
-        """The simulator with the conditions of an experiment and its additions; other names are covariates."""
-        added = {n: self.parameters[n] + more for n, more in experiment.add.items() if n in self.parameters}
-        fixed = {n: value for n, value in experiment.conditions.items() if n in self.parameters}
-        return self.with_parameters({**added, **fixed}) if added or fixed else self
+        """The simulator with the conditions of an experiment, and its additions on top; other names are covariates."""
+        there = {n: value for n, value in experiment.conditions.items() if n in self.parameters}
+        for name, more in experiment.add.items():
+            if name in self.parameters:
+                there[name] = there.get(name, self.parameters[name]) + more
+        return self.with_parameters(there) if there else self
 
     def to_dict(self) -> dict[str, Any]:
         """Kind, axis, effects and parameters as plain types."""
