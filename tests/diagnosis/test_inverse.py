@@ -83,3 +83,33 @@ def test_a_regression_gives_the_parameters_of_the_axis_in_units_of_effort(case: 
     for error in ("fitted rms", "held-out rms"):
         assert found[error] < 0.3 * frame.loc["nominal structure", error]
     assert "rms in N·m" in table.note
+
+
+def test_gravity_known_efforts_and_payloads_are_part_of_the_balance() -> None:
+    true = TRUE | {"gravity_torque": 1.5}
+    rig = tl.System(kind="rigid_joint", parameters=true, effects=("joint:coulomb", "joint:viscous"))
+
+    def run(name: str, frequency: float, payload: float) -> Experiment:
+        inputs = {"motor_torque": np.sin(2 * np.pi * frequency * TIME), "known_torque": 0.5 * np.cos(3.0 * TIME)}
+        frame = pd.DataFrame(inputs, index=pd.Index(TIME, name="t"))
+        loaded = rig.with_parameters({"gravity_torque": 1.5 + payload})
+        data = frame.assign(joint_angle=loaded.simulate(frame, tolerance=1e-8)["joint_angle"])
+        return Experiment(name=name, data=data, add={"gravity_torque": payload}, initial={"joint_angle": 0.0})
+
+    signals = {
+        "motor_torque": SignalSpec("motor_torque", "u", "N*m", "input", True),
+        "known_torque": SignalSpec("known_torque", "k", "N*m", "input", True),
+        "joint_angle": SignalSpec("joint_angle", "q", "rad", "output", False, noise_sd=1e-4),
+    }
+    dataset = Dataset(
+        name="axis", description="", kind="rigid_joint", axis="rotary", nominal_effects=rig.effects, controller=None,
+        parameters={name: NominalParameter(value) for name, value in true.items()}, signals=signals, path=Path(),
+        experiments=(run("bare", 0.7, 0.0), run("loaded", 1.1, 0.6)),
+    )  # fmt: skip
+    case = make_case(dataset)
+    table = inverse_dynamics(case, [case.system], judged=[1])
+    assert table is not None
+    found = table.frame.iloc[0]
+    for name in ("inertia", "gravity_torque", "viscous", "coulomb"):
+        assert found[name] == pytest.approx(true[name], rel=0.05), name
+    assert found["held-out rms"] < 0.1 * np.sqrt(0.5) * true["torque_constant"]

@@ -91,7 +91,7 @@ def test_an_error_that_is_no_noise_is_explained() -> None:
     near = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, followed=0.1)
     assert notes.no_noise(near) == []
     (follows,) = notes.no_noise(replace(near, followed=0.45))
-    assert "foretells 45 % of its mean square" in follows
+    assert "predicts 45 % of its mean square" in follows
     (large,) = notes.no_noise(replace(near, trained=16.0))
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
     (differs,) = notes.no_noise(replace(near, scattered=6.25))
@@ -104,4 +104,4 @@ def test_experiments_that_the_verdict_counts_otherwise_than_foretold_are_named(t
     foretold, near = (SimpleNamespace(residuals=rows) for rows in (told, [told[0], np.full((3, 5), 1.0)]))
     (warning,) = notes.allowed_more(twin_case, foretold, near, floor, twin_case.test[:2])  # type: ignore[arg-type]
     assert twin_case.experiments[twin_case.test[1]].name in warning
-    assert "1.7 noise floors as foretold, 0 within" in warning
+    assert "a gap of 1.7 noise floors. Within the uncertainty of the fit the gap can be 0" in warning

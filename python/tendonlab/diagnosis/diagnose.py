@@ -25,7 +25,7 @@ from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
 PLAIN = 1e-3  # relative change of the cost at which the fit of the untouched simulator's initial states ends
-FORCED = "The check of the logs found problems that mislead a diagnosis; it was made by force."
+FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
 log = logging.getLogger("tendonlab")
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab import _core
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case, fine_enough
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
@@ -56,6 +57,11 @@ def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list
 
     def seen(i: int) -> Sensitivities:
         start = initial.get(i, case.own_mean(i).tolist())
-        return sensitivities(case, fitted.system, i, start)
+        try:
+            return sensitivities(case, fitted.system, i, start)
+        except NumericalError:
+            if i in case.train:
+                raise
+            return Sensitivities.unknown(case.prepared[i].measured)
 
     return list(pool.map(seen, range(len(case.experiments))))

@@ -131,7 +131,9 @@ def _unknown(diagnosis: Diagnosis) -> str:
             "know of the rig"
         )
     effects = f"{capital(phrases(diagnosis.selected, diagnosis.system))} {found}"
-    if not diagnosis.explained:
+    if diagnosis.explained is None:
+        share = "and held-out experiments are at the noise floor"
+    elif diagnosis.explained == 0.0:
         share = f"but {'explains' if one else 'explain'} nothing of the excess error on held-out experiments"
     else:
         share = f"and {'explains' if one else 'explain'} {percent(diagnosis.explained)} of the excess error"

@@ -40,9 +40,9 @@ def answer(
     """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone;
     `library`: names of the effects that were asked for (None: all)."""
     fitter, case, floor = search.fitter, search.fitter.case, search.fitter.floor
-    judged = case.test or case.train
-    steps = [heldout.replay(case, heldout.models(case, model, judged), judged) for model in search.path]
-    untouched = heldout.replay(case, [case.system] * len(judged), judged)
+    everywhere = case.test or case.train
+    models = [[case.system] * len(everywhere), *(heldout.models(case, model, everywhere) for model in search.path)]
+    (untouched, *steps), judged, failed = heldout.replay_all(case, models, everywhere)
     if search.selected:  # an effect that was established stands out of the floor
         floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
@@ -79,6 +79,7 @@ def answer(
         caveats=caveats(case, search.final, stages, floor, judged, drift, lone),
         warnings=(
             *notes.warnings(case, floor, search),
+            *notes.not_simulated(failed),
             *notes.not_asked(case, search, library),
             *notes.not_improved(held_out, search.selected),
             *notes.allowed_more(case, stages["with_effect"], near["with_effect"], floor, judged),

@@ -77,7 +77,7 @@ def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
         if floor.rms[c] > swing:
             said.append(
                 f"The noise floor of {case.outputs[c]} ({number(floor.rms[c], 2)}) exceeds its motion (rms "
-                f"{number(swing, 2)}): what it says decides nothing."
+                f"{number(swing, 2)}), so this output supports no conclusion."
             )
     return said
 

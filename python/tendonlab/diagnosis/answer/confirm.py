@@ -13,6 +13,7 @@ from tendonlab.diagnosis.search.contest import CLEAR
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import relief
 from tendonlab.diagnosis.search.workshop import Workshop
+from tendonlab.errors import NumericalError
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
@@ -35,7 +36,10 @@ def _is_refuted(search: Search) -> bool:
     assert won is not None  # every step was won
     if not case.test or relief(*search.path[-2:]) > CLEAR.evidence:  # what beliefs confirm needs no experiment
         return False
-    before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
+    try:
+        before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
+    except NumericalError:  # the answer leaves out what one of the models cannot simulate
+        return False
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
     if fitter.floor.repeated:
         foretold = CARRIED * won.left_out_gain * len(case.test) / len(case.train)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tendonlab import _core
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor, blocks_of
@@ -43,6 +44,32 @@ def replay(case: Case, systems: Sequence[System], experiments: Sequence[int]) ->
     return Replayed(tuple(systems), initial, residuals, outputs)
 
 
+def replay_all(
+    case: Case, models: Sequence[Sequence[System]], experiments: Sequence[int]
+) -> tuple[list[Replayed], list[int], dict[str, str]]:
+    """Each of `models`, its systems for each of `experiments`, replayed on the experiments that all of them can
+    simulate; which these are; and why another one could not be simulated, by its name. Raises NumericalError without
+    any left."""
+    able, failed = [], {}
+    for k, i in enumerate(experiments):
+        try:
+            able.append((i, [replay(case, [of[k]], [i]) for of in models]))
+        except NumericalError as error:
+            failed[case.experiments[i].name] = str(error)
+    if not able:
+        raise NumericalError(f"no experiment to judge by can be simulated: {next(iter(failed.values()), 'none given')}")
+    return [_joined([each[m] for _, each in able]) for m in range(len(models))], [i for i, _ in able], failed
+
+
+def _joined(parts: Sequence[Replayed]) -> Replayed:
+    return Replayed(
+        tuple(system for of in parts for system in of.systems),
+        tuple(start for of in parts for start in of.initial),
+        tuple(residual for of in parts for residual in of.residuals),
+        tuple(outputs for of in parts for outputs in of.outputs),
+    )
+
+
 def mean_squares(case: Case, of: Replayed, experiments: Sequence[int]) -> list[np.ndarray]:
     """Mean square of each output over blocks of at least 2 s, an array (blocks, outputs) an experiment."""
     rows = []
@@ -75,15 +102,21 @@ def explained(before: Replayed, after: Replayed, floor: Floor) -> float | None:
 
 
 def gap(mean_square: np.ndarray, floor: np.ndarray) -> float:
-    """sqrt(max(0, MSE - floor²)), pooled over outputs after dividing each by its floor."""
+    """sqrt(max(0, MSE - floor²)), pooled over the measured outputs, each over its floor; NaN without any."""
     return float(_gaps(mean_square, floor))
 
 
 def _gaps(mean_square: np.ndarray, floor: np.ndarray) -> np.ndarray:
-    """The gap of each row of mean squares (..., outputs)."""
-    measured = np.isfinite(floor)
-    excess = np.mean(mean_square[..., measured] / floor[measured] ** 2, axis=-1) - 1.0
+    """The gap of each row of mean squares (..., outputs), over the outputs measured there; NaN without any."""
+    excess = _mean_of_measured(mean_square / np.square(floor), axis=-1) - 1.0
     return np.asarray(np.sqrt(np.maximum(0.0, excess)))
+
+
+def _mean_of_measured(values: np.ndarray, axis: int) -> np.ndarray:
+    """Mean of what is finite; NaN where nothing is."""
+    there = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.sum(values, axis=axis, where=there) / np.sum(there, axis=axis))
 
 
 def shrinkage(
@@ -103,7 +136,7 @@ def shrinkage(
 
 def _shrinkages(before: np.ndarray, after: np.ndarray, floor: np.ndarray, draws: np.ndarray) -> np.ndarray:
     """Shrinkage over each row of blocks in `draws`, of those with a gap before."""
-    first, last = (_gaps(of[draws].mean(axis=1), floor) for of in (before, after))
+    first, last = (_gaps(_mean_of_measured(of[draws], axis=1), floor) for of in (before, after))
     there = first > 0.0
     return np.asarray(1.0 - last[there] / first[there])
 

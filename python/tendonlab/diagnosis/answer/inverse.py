@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -14,7 +15,16 @@ from tendonlab.simulation.system import System
 CUTOFF = 60.0  # Hz, of a Butterworth filter of fourth order, forwards and backwards: it shifts no phase
 TRIM = 0.1  # s at each end, where the filter starts and stops
 
-Motion = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+@dataclass(frozen=True)
+class Motion:
+    """A filtered experiment: position, velocity and acceleration, and the drive effort less what is known to act
+    against it."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    effort: np.ndarray
 
 
 def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int]) -> SideTable | None:
@@ -28,11 +38,11 @@ def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int
     motions = [_motion(case, i, output) for i in range(len(case.experiments))]
     rows = []
     for system in systems:
-        names = ["inertia", *amplitudes(system)]
+        names = ["inertia", *_gravity(system), *amplitudes(system)]
         train = np.concatenate([_regressors(system, motions[i]) for i in case.train])
-        effort = np.concatenate([motions[i][2] for i in case.train])
+        effort = np.concatenate([motions[i].effort for i in case.train])
         fit = np.linalg.lstsq(train, effort, rcond=None)[0]
-        held = [motions[i][2] - _regressors(system, motions[i]) @ fit for i in judged]
+        held = [motions[i].effort - _regressors(system, motions[i]) @ fit for i in judged]
         added = [e for e in system.effects if e not in case.system.effects]
         rows.append(
             {"model": " + ".join(["nominal structure", *added]), "fitted rms": _rms(effort - train @ fit),
@@ -48,20 +58,31 @@ def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int
 
 
 def _motion(case: Case, i: int, output: int) -> Motion:
-    """Velocity and acceleration, and the drive effort, of a filtered experiment."""
+    """Experiment i filtered. The payload that it states adds to gravity, and an effort known to act on the axis helps
+    the drive."""
     from scipy.signal import butter, filtfilt
 
-    time = np.asarray(case.experiments[i].time)
+    experiment, info = case.experiments[i], case.system.info
+    time = np.asarray(experiment.time)
     step = float(np.median(np.diff(time)))
     b, a = butter(4, 2 * CUTOFF * step)
-    command = case.experiments[i].data[case.system.info.inputs[0].name].to_numpy(dtype=float)
-    effort = command * _command_gain(case.system)
+    effort = experiment.data[info.inputs[0].name].to_numpy(dtype=float) * _command_gain(case.system)
+    for known in info.inputs[1:]:
+        if known.name in experiment.data:
+            effort = effort + experiment.data[known.name].to_numpy(dtype=float)
     recorded = pd.DataFrame({"position": case.prepared[i].measured[output], "effort": effort})
     whole = recorded.interpolate(limit_direction="both")
     position, effort = (filtfilt(b, a, whole[name].to_numpy()) for name in whole)
+    effort = effort - sum(experiment.add.get(name, 0.0) for name in _gravity(case.system)) * np.sin(position)
     velocity = np.gradient(position, time)
     kept = slice(round(TRIM / step), -round(TRIM / step))
-    return velocity[kept], np.gradient(velocity, time)[kept], effort[kept]
+    return Motion(position[kept], velocity[kept], np.gradient(velocity, time)[kept], effort[kept])
+
+
+def _gravity(system: System) -> list[str]:
+    """The parameter of the effort of gravity at 90 degrees, where gravity acts."""
+    gravity = system.info.with_role("payload")
+    return [gravity.name] if gravity is not None and system.parameters.get(gravity.name, 0.0) != 0.0 else []
 
 
 def amplitudes(system: System) -> list[str]:
@@ -76,8 +97,9 @@ def amplitudes(system: System) -> list[str]:
 
 
 def _regressors(system: System, motion: Motion) -> np.ndarray:
-    velocity, acceleration, _ = motion
-    return np.column_stack([acceleration, *(effort_column(system, name, velocity) for name in amplitudes(system))])
+    gravity = [np.sin(motion.position) for _ in _gravity(system)]
+    friction = [effort_column(system, name, motion.velocity) for name in amplitudes(system)]
+    return np.column_stack([motion.acceleration, *gravity, *friction])
 
 
 def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -71,7 +71,7 @@ def _on_the_split(case: Case) -> list[str]:
         messages.append(f"No experiment is held out. {how if num > 1 else alone}")
     if num < FEWEST_EXPERIMENTS:
         only = f"Only {num} training experiment{'s' if num > 1 else ''}"
-        messages.append(f"{only}: cross-validation uses blocks of 2 s instead of whole experiments.")
+        messages.append(f"{only}: the 95 % intervals rest on blocks of 2 s, not on how experiments differ.")
     return messages
 
 
@@ -126,7 +126,7 @@ def _on_the_refuted(search: Search) -> list[str]:
     if not search.refuted:
         return []
     chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
-    against = "held-out ones are foretold worse with it, or hardly better" if search.fitter.floor.repeated else chance
+    against = "held-out ones are predicted worse with it, or hardly better" if search.fitter.floor.repeated else chance
     names = ", ".join(search.refuted)
     return [f"Not established: {names}. The training experiments speak for it, but {against}."]
 
@@ -138,6 +138,12 @@ def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list
     names = [name for name in library or () if name not in tried and name not in case.system.effects]
     reason = "it requires an effect that the simulator lacks, or a signal that was not measured, or replaces nothing"
     return [f"Asked for and not tried: {', '.join(names)} ({reason})."] if names else []
+
+
+def not_simulated(failed: Mapping[str, str]) -> list[str]:
+    """A warning for each experiment that no judgement counts. `failed`: why it could not be simulated, by its name."""
+    left_out = "is left out of the judgement, as it could not be simulated"
+    return [f"Experiment {name} {left_out}: {why}." for name, why in failed.items()]
 
 
 def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
@@ -160,8 +166,8 @@ def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, e
         told, left = (gap(row_mean_squares(of), floor.rms) for of in (before, after))
         if left < told and told > 1.0:
             found.append(
-                f"Held-out experiment {case.experiments[i].name}: the gap is {told:.2g} noise floors as foretold, "
-                f"{left:.2g} within what the fit leaves open. The verdict counts the latter."
+                f"Held-out experiment {case.experiments[i].name}: the fitted model predicts a gap of {told:.2g} noise "
+                f"floors. Within the uncertainty of the fit the gap can be {left:.2g}, and the verdict uses that."
             )
     return found
 
@@ -172,7 +178,7 @@ def no_noise(levels: Levels) -> list[str]:
     if levels.followed >= FOLLOWED:
         found.append(
             "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "
-            "over direction and time since the start, learnt from other experiments, foretells "
+            "over direction and time since the start, learnt from other experiments, predicts "
             f"{100 * levels.followed:.0f} % of its mean square. So it is not noise."
         )
     if levels.trained >= FAR_TRAINED:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.heldout import Replayed, row_mean_squares
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import WhereMap
@@ -25,12 +25,7 @@ def dimension(port: PortInfo, quantity: str) -> str:
 
 def signals(case: Case, of: Replayed, floor: Floor) -> list[dict[str, Any]]:
     """Share of each output in the excess mean square over the floor, largest first."""
-    square = np.array(
-        [
-            np.nanmean(np.square(row)) if np.isfinite(row).any() else np.nan
-            for row in np.concatenate(of.residuals, axis=1)
-        ]
-    )
+    square = row_mean_squares(np.concatenate(of.residuals, axis=1))
     excess = np.array(
         [
             max(0.0, square[c] / floor.rms[c] ** 2 - 1.0) if np.isfinite(floor.rms[c]) else 0.0

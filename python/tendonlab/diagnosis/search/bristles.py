@@ -13,8 +13,8 @@ from tendonlab.simulation.catalog import MEMORY, PORT_QUANTITIES
 
 VISIBLE = 1.5  # times its noise, by which a sensor sees bristles bend: imitations bent by 1.1 at most
 UNSEEN = (
-    "its bristles slide before any sensor sees them bend (by {:.1g} of its noise), so only their creep tells, as that "
-    "of a rig that noise faster than its log shakes"
+    "its bristles bend by only {:.1g} of a sensor's noise before they slide, so no sensor sees them bend; their creep "
+    "may come from noise that shakes the rig"
 )
 
 

@@ -74,7 +74,8 @@ def more_evident(best: Fitted | None, fit: Fitted) -> Fitted:
 def restarted(fitter: Fitter, base: Fitted, leader: Fitted, fit: Fitted) -> Fitted:
     """The better of `fit` and a fit of the same model from where the `leader`, another extension of `base`, ended: two
     effects that say the same must not differ by the optimum that each of them found."""
-    shared = {f.name: leader.system.parameters[f.name] for f in base.free}
+    there = leader.system.parameters  # a whole friction takes the place of others, parameters and all
+    shared = {f.name: there[f.name] for f in base.free if f.name in there and f.name in fit.system.parameters}
     try:
         system = fit.system.with_parameters(shared)
         again = fitter.settled(fitter.fit(system, added=fit.added, initial=leader.initial))

@@ -6,7 +6,7 @@ of the change in its residuals gives the gain that a refit may be expected to br
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from tendonlab.fitting.fitted import Fitted, solved
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
+from tendonlab.simulation.system import System
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 WHOLE_SHAPES = (0.3, 1.0, 3.0)  # of the typical first shape of a whole friction
@@ -62,26 +63,30 @@ def candidates(case: Case, base: Fitted, asked: Sequence[str] | None = None) -> 
     measured = {info.outputs[c].name for c in case.measured}
 
     def applies(e: EffectInfo) -> bool:
-        unmeasured = e.element.startswith("sensor.") and e.element.removeprefix("sensor.") not in measured
-        present = e.name in base.system.effects
-        named = asked is None or e.name in asked
-        if not named or e.structural or unmeasured or present or e.element in case.idle:
+        if e.element in case.idle or not (asked is None or e.name in asked):
             return False
         if e.roles & WHOLE:
-            return asked is not None and can_replace(e, base.system, base.added)
-        return _requirements_met(e, base)
+            return asked is not None and can_be_seen(e, measured) and can_replace(e, base.system, base.added)
+        return can_be_seen(e, measured) and can_be_added(e, base.system)
 
     return [e.name for e in info.effects if applies(e)]
 
 
-def _requirements_met(effect: EffectInfo, base: Fitted) -> bool:
-    """A refinement of dry friction (a bristle, the Stribeck excess) requires dry friction of its element; an effect
-    that shares parameters with others requires those."""
-    if not set(effect.needs) <= set(base.system.effects):
+def can_be_seen(effect: EffectInfo, measured: Collection[str]) -> bool:
+    """Whether an effect could show in the outputs that were `measured`; the structure of a system is no effect."""
+    sensor = effect.element.removeprefix("sensor.")
+    return not effect.structural and (sensor == effect.element or sensor in measured)
+
+
+def can_be_added(effect: EffectInfo, system: System) -> bool:
+    """Whether the simulator lacks the effect and has what it requires: a refinement of dry friction (a bristle, the
+    Stribeck excess) requires dry friction of its element; an effect that shares parameters with others requires those.
+    """
+    if effect.name in system.effects or not set(effect.needs) <= set(system.effects):
         return False
     if not effect.roles & REFINES:
         return True
-    present = [e for e in base.system.info.effects if e.name in base.system.effects and e.element == effect.element]
+    present = [e for e in system.info.effects if e.name in system.effects and e.element == effect.element]
     return any(e.roles & LEVEL and not e.roles & REFINES for e in present)
 
 
