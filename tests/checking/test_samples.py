@@ -26,6 +26,20 @@ def test_good_samples_have_no_finding(tmp_path: Path) -> None:
     assert found(tmp_path, (TIME, ANGLE, CURRENT)) == []
 
 
+def test_samples_that_repeat_a_stamp_are_left_out_and_counted(tmp_path: Path) -> None:
+    time, angle = TIME.copy(), ANGLE.copy()
+    time[[400, 401, 700]] = time[[399, 399, 699]]
+    angle[400] = 7.0  # of samples with one stamp the first counts
+    folder = Logs({"run_1": (time, angle, CURRENT)}).write(tmp_path)
+    (finding,) = [f for f in sample_findings(folder) if "repeats the one before" in f.detail]
+    assert (finding.problem, finding.experiment, finding.blocks) == ("sampling", "run_1", False)
+    assert finding.count == 3
+    assert finding.detail.startswith("3 samples left out")
+    (experiment,) = folder.experiments
+    assert len(experiment.data) == 997
+    assert experiment.data["joint_angle"].max() < 2.0
+
+
 def test_a_gap_is_measured_in_lost_samples_and_seconds(tmp_path: Path) -> None:
     kept = np.delete(np.arange(1000), [300, 500, 501, 502])
     (gap,) = found(tmp_path, (TIME[kept], ANGLE[kept], CURRENT[kept]))

@@ -198,7 +198,7 @@ BROKEN: list[tuple[str, Mutation, str]] = [
     ("add below physics", put("experiments.0.add.inertia", -1.0), r"\[0\].add.inertia: -0.98 is outside"),
     ("initial of an unknown", put("experiments.0.initial.joint_angel", 0.0), r"initial.joint_angel: .*'joint_angle'"),
     ("time runs back", samples("t", 7, 0.05), r"one.csv, row 9, column 't': time runs back \(0.05 s after 0.06 s\)"),
-    ("time stands still", samples("t", 7, 0.06), r"one.csv, row 9, column 't': time stands still"),
+    ("time stands still", samples("t", slice(6, 9), 0.06), r"one.csv, row 9, column 't': 16 % of the stamps repeat"),
     ("time missing", samples("t", 3, np.nan), r"one.csv, row 5, column 't': no time"),
     ("text among numbers", samples("q", 4, "oops"), r"one.csv, row 6, column 'q': 'oops': expected a number"),
     ("infinite sample", samples("q", 4, np.inf), r"one.csv, row 6, column 'q': an infinite value"),

@@ -50,21 +50,23 @@ def test_the_same_seed_gives_the_same_rigs(pendulum: Path) -> None:
 
 @pytest.mark.cpu(15)
 def test_an_interruption_keeps_what_was_stored_and_the_same_call_goes_on(pendulum: Path, tmp_path: Path) -> None:
-    calls = []
+    class StopsAtFour:
+        calls = 0
 
-    def stops_at_four(_: tl.Dataset) -> Diagnosis:
-        calls.append(1)
-        if len(calls) == 4:
-            raise KeyboardInterrupt
-        return says("load:offset")
+        def __call__(self, _: tl.Dataset) -> Diagnosis:
+            self.calls += 1
+            if self.calls == 4:
+                raise KeyboardInterrupt
+            return says("load:offset")
 
+    stops_at_four = StopsAtFour()
     first = tl.rehearse(pendulum, diagnose=stops_at_four, out=tmp_path, **FEW)
     assert (first.interrupted, len(first.cases), first.num_left_out) == (True, 3, 5)
     with (tmp_path / CASES).open("a") as file:
         file.write('{"case": "cut sh')  # as a crash leaves it
     second = tl.rehearse(pendulum, diagnose=stops_at_four, out=tmp_path, **FEW)
     assert (second.interrupted, len(second.cases), second.num_left_out) == (False, 8, 0)
-    assert len(calls) == 4 + 5
+    assert stops_at_four.calls == 4 + 5
 
 
 @pytest.mark.cpu(15)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,8 +13,10 @@ from sweeps import SIM, TABLE, TIME, extremes, pushed
 
 import tendonlab as tl
 from tendonlab.sweeping import chunk
+from tendonlab.sweeping.fingerprint import function_text
 
 PROCESSES = ProcessPoolExecutor(1)  # no task is sent to it: it starts no process
+WEIGHTS = np.array([1.0, 2.0])
 LONG, SHORT = pushed(), pushed(TIME[:77], amplitude=0.6)
 
 
@@ -76,6 +80,16 @@ def test_a_function_of_the_caller_is_a_summary_in_any_blocks(monkeypatch: pytest
     np.testing.assert_array_equal(given["extremes"].isel(extremes_0=1), swept(reduce="max")["joint_angle"])
     monkeypatch.setattr(chunk, "BLOCK_BYTES", 1.0)  # a point at a time
     assert given.identical(swept(reduce=extremes))
+
+
+def test_functions_that_differ_in_what_they_hold_have_texts_of_their_own() -> None:
+    def scaled(factor: float, weights: np.ndarray = WEIGHTS) -> Callable[[np.ndarray], np.ndarray]:
+        return lambda c, gain=factor: factor * gain * weights * c
+
+    again = [function_text(scaled(3.0)) for _ in range(2)]
+    assert again[0] == again[1]
+    others = [scaled(5.0), scaled(3.0, 2.0 * WEIGHTS), partial(scaled, 3.0), partial(scaled, 5.0), scaled]
+    assert len({again[0], *map(function_text, others)}) == 1 + len(others)
 
 
 def test_outputs_and_precision_are_those_asked_for() -> None:

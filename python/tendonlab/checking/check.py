@@ -22,8 +22,8 @@ EXPLAINED = 0.5  # level of the residual beyond which the equation explains too 
 UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
 UNTIMED = "Signs, scales and lags could not be checked: {kind} has steady points, no time."
 UNEXPLAINED = (
-    "Lags could not be checked: no lag brings these logs close to the simulator's equations. These leave out what "
-    "remembers, as presliding does; parameters far off or a missing effect may be the cause as well."
+    "Lags could not be checked: no lag brings these logs close to the simulator's equations. The check ignores effects "
+    "with memory, such as presliding. Parameters far off or a missing effect may be the cause as well."
 )
 
 

@@ -57,7 +57,9 @@ def _late_alone(nats: np.ndarray) -> np.ndarray:
 
 def _far_off(away: np.ndarray) -> np.ndarray:
     """Whether a lag is far from the others beside what these scatter, in any channel: a stop delays every motion that
-    meets it."""
+    meets it. Of one experiment alone nothing is."""
+    if away.shape[1] < 2:
+        return np.zeros(away.shape[1], dtype=bool)
     others = [np.median(np.abs(np.delete(away, i, axis=1)), axis=1) / MIDDLE for i in range(away.shape[1])]
     return np.asarray(np.any(np.abs(away) > APART * np.array(others).T, axis=0))
 

@@ -34,7 +34,12 @@ def factor_findings(factors: Sequence[Factor], dataset: Dataset) -> list[Finding
     kind = "sign" if best.value < 0 else "scale"
     others = [name for f in factors[1:] if (f.value < 0) == (best.value < 0) for name in f.signals]
     alternatives = tuple(dict.fromkeys(name for name in others if name not in best.signals))
-    details = _sign_words if kind == "sign" else _scale_words
+
+    def details(name: str) -> str:
+        if kind == "sign":
+            return _sign_words(name, best.value, alternatives)
+        return _scale_words(name, best.value, alternatives, dataset)
+
     return [
         Finding(
             problem=kind,
@@ -42,13 +47,13 @@ def factor_findings(factors: Sequence[Factor], dataset: Dataset) -> list[Finding
             alternatives=alternatives,
             factor=best.value,
             blocks=True,
-            detail=details(name, best.value, alternatives, dataset),
+            detail=details(name),
         )
         for name in best.signals
     ]
 
 
-def _sign_words(name: str, value: float, alternatives: Sequence[str], dataset: Dataset) -> str:
+def _sign_words(name: str, value: float, alternatives: Sequence[str]) -> str:
     text = f"the efforts that the motion needs come out {number(value)} times as stated"
     size = f". Their size is wrong as well{_hint(-value)}" if abs(math.log(-value)) > math.log(BLOCKING) else ""
     turn = f"turn the sign of {' or '.join([name, *alternatives])}{' (one of them)' if alternatives else ''}"

@@ -51,6 +51,9 @@ def _scatter(steps: np.ndarray) -> float:
 
 
 def _stamps(experiment: Experiment) -> Iterator[Finding]:
+    if experiment.num_repeated:
+        text = f"{_counted(experiment.num_repeated, 'sample')} left out, whose time stamp repeats the one before"
+        yield _note("sampling", text, experiment, count=experiment.num_repeated)
     steps = np.diff(experiment.time)
     if len(steps) < LEAST_STEPS:
         return

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KEYS = ("name", "file", "split", "repeat", "start", "conditions", "add", "initial")
+MOST_REPEATED = 0.05  # share of the time stamps that may repeat the one before
 MAX_MISSING = 5  # input samples in a row that are interpolated over
 
 
@@ -110,6 +111,8 @@ def _read_experiment(table: Table, split: str, context: Context) -> Experiment:
     _check_additions(table.table("add", optional=True), add, context)
     initial = table.numbers("initial")
     _check_initial(table.table("initial", optional=True), initial, context.info)
+    logged = _read_frame(table.text("file"), context)
+    is_new = np.diff(logged.index.to_numpy(), prepend=-np.inf) > 0  # of samples with one stamp the first counts
     return Experiment(
         holds={signal: spec.hold for signal, spec in context.signals.items()},
         name=table.text("name"),
@@ -119,7 +122,8 @@ def _read_experiment(table: Table, split: str, context: Context) -> Experiment:
         initial=initial,
         repeat=table.text("repeat") if "repeat" in table.values else None,
         start=table.number("start") if "start" in table.values else None,
-        data=_read_frame(table.text("file"), context),
+        data=logged[is_new],
+        num_repeated=int(np.sum(~is_new)),
     )
 
 
@@ -163,7 +167,7 @@ def _read_frame(file: str, context: Context) -> pd.DataFrame:
 
 
 def _read_time_samples(columns: Columns, context: Context) -> np.ndarray:
-    """The time in s, shape (n,), increasing."""
+    """The time in s, shape (n,), nowhere falling."""
     name = context.time_column
     raw = columns.values[name]
     if len(raw) < 2:
@@ -171,11 +175,15 @@ def _read_time_samples(columns: Columns, context: Context) -> np.ndarray:
     if np.isnan(raw).any():
         raise columns.error(name, "no time; expected a number", sample=int(np.isnan(raw).argmax()))
     time = convert(raw, unit=context.time_unit, to="s")
-    backwards = np.diff(time) <= 0
+    backwards = np.diff(time) < 0
     if backwards.any():
         sample = int(backwards.argmax()) + 1
-        what = "stands still" if time[sample] == time[sample - 1] else "runs back"
-        problem = f"time {what} ({time[sample]:.9g} s after {time[sample - 1]:.9g} s); time must increase"
+        problem = f"time runs back ({time[sample]:.9g} s after {time[sample - 1]:.9g} s); time must increase"
+        raise columns.error(name, problem, sample=sample)
+    repeated = np.diff(time) == 0
+    if np.mean(repeated) > MOST_REPEATED:
+        sample = int(repeated.argmax()) + 1
+        problem = f"{100 * np.mean(repeated):.0f} % of the stamps repeat the one before; time must increase"
         raise columns.error(name, problem, sample=sample)
     return time
 

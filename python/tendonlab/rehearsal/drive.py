@@ -13,7 +13,7 @@ from tendonlab.errors import NumericalError
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.command import command_of
 from tendonlab.simulation.records import Controller
-from tendonlab.simulation.signals import ROUNDING, white_noise_sd
+from tendonlab.simulation.signals import spline_near
 from tendonlab.simulation.system import System
 
 REFERENCE, FEEDFORWARD = "_logged_motion", "_logged_command"  # columns of a tracking loop; no signal has these names
@@ -92,14 +92,8 @@ def drive_of(rig: Dataset) -> Drive:
 
 def _smooth_path(time: np.ndarray, logged: np.ndarray) -> np.ndarray:
     """A logged motion without its noise, at every sample."""
-    from scipy.interpolate import CubicSpline
-
-    from tendonlab.simulation.smoothing import smoothing_spline
-
     kept = np.isfinite(logged)
-    noiseless = white_noise_sd(logged) <= ROUNDING * float(np.ptp(logged[kept]))
-    make = CubicSpline if noiseless else smoothing_spline
-    return np.asarray(make(time[kept], logged[kept])(time))
+    return np.asarray(spline_near(time[kept], logged[kept])(time))
 
 
 def _played(system: System, run: Experiment, tolerance: float) -> pd.DataFrame | None:

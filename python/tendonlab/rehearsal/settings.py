@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tendonlab.rehearsal.rig import SimulatedRig
-from tendonlab.sweeping.fingerprint import digest, parts_of
+from tendonlab.sweeping.fingerprint import digest, function_text, parts_of
 from tendonlab.version import version
 
 
@@ -21,5 +21,5 @@ def settings_of(rigs: SimulatedRig, sizes: Sequence[float], seed: int, diagnose:
         "experiments": digest(part for e in rigs.runs for part in (repr((e.split, e.repeat)), *parts_of(e))),
         "sizes": ", ".join(f"{size:g}" for size in sizes),
         "seed": str(seed),
-        "function that diagnoses": getattr(diagnose, "__qualname__", "tendonlab.diagnose"),
+        "function that diagnoses": "tendonlab.diagnose" if diagnose is None else function_text(diagnose),
     }

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tendonlab.diagnosis.search.screen import can_be_added, can_be_seen
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.priors import free_parameters, start_of
 from tendonlab.rehearsal.rig import TOLERANCE, SimulatedRig
-from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
+from tendonlab.simulation.catalog import WHOLE, ParameterInfo
 from tendonlab.simulation.system import System
 
 LARGEST, STEP, STEPS = 3.0, 10.0**-0.5, 14  # typical sizes on this rig; each is a step below the one before
@@ -53,17 +54,8 @@ class Ladder:
 def withheld_effects(system: System, measured: Sequence[str]) -> list[str]:
     """The effects that a diagnosis of these outputs would consider: those that the simulator lacks, apart from laws
     that are the whole friction of an element."""
-    return [e.name for e in system.info.effects if _is_candidate(e, system, measured)]
-
-
-def _is_candidate(effect: EffectInfo, system: System, measured: Sequence[str]) -> bool:
-    unmeasured = effect.element.startswith("sensor.") and effect.element.removeprefix("sensor.") not in measured
-    if effect.structural or unmeasured or effect.name in system.effects or effect.roles & WHOLE:
-        return False
-    if not set(effect.needs) <= set(system.effects):
-        return False
-    present = [e for e in system.info.effects if e.name in system.effects and e.element == effect.element]
-    return not effect.roles & REFINES or any(e.roles & LEVEL and not e.roles & REFINES for e in present)
+    known = [e for e in system.info.effects if not e.roles & WHOLE]
+    return [e.name for e in known if can_be_seen(e, measured) and can_be_added(e, system)]
 
 
 class Gauge:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from tendonlab.rehearsal.tally import EffectRehearsal, Share
 from tendonlab.report.numbers import number, percent_span, prefixed, probability, span
 from tendonlab.report.words import capital, listing, parameter_words, phrase
-from tendonlab.simulation.catalog import kinds, system_info
 
 if TYPE_CHECKING:
     from tendonlab.rehearsal.result import Rehearsal
@@ -120,11 +119,6 @@ def amount_of_work(of: Rehearsal) -> str:
         why = "the rehearsal was interrupted" if of.interrupted else "there was no time for them"
         text += f"; {of.num_left_out} were left out because {why}. The same call with an output folder goes on"
     return f"{text}."
-
-
-def system_words(kind: str) -> str:
-    """The equation of the system, for the page."""
-    return system_info(kind).equation if kind in kinds() else kind
 
 
 def _share_words(of: Share) -> str:

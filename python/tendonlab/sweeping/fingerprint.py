@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from functools import partial
 from types import CodeType
 from typing import Any
 
@@ -17,7 +18,7 @@ from tendonlab.version import version
 def fingerprint(layout: Layout, tolerance: float) -> dict[str, str]:
     """A digest of each part of a sweep, by the name that a message gives it."""
     keep, reduction = layout.keep, layout.keep.reduction
-    function = "" if reduction is None or reduction.function is None else _function(reduction.function)
+    function = "" if reduction is None or reduction.function is None else function_text(reduction.function)
     kept = (None if reduction is None else reduction.name, function, keep.dtype, layout.outputs, layout.several)
     return {
         "package version": version(),
@@ -38,11 +39,28 @@ def parts_of(experiment: Experiment) -> Iterable[Any]:
         yield column.to_numpy() if column.dtype.kind in "biuf" else repr(column.tolist())
 
 
-def _function(given: Any) -> str:
-    """The text of a function as far as Python knows it: its name, code and constants."""
+def function_text(given: Any) -> str:
+    """The text of a function as far as Python knows it: its name, code and constants, its defaults, what its closure
+    holds, and the arguments that `functools.partial` adds."""
+    if isinstance(given, partial):
+        return repr((function_text(given.func), list(map(_value, given.args)), _named(given.keywords)))
     code = getattr(given, "__code__", None)
     name = getattr(given, "__qualname__", type(given).__qualname__)
-    return repr((name, _code(code) if isinstance(code, CodeType) else None))
+    held = [_value(cell.cell_contents) for cell in getattr(given, "__closure__", None) or ()]
+    defaults = [_value(value) for value in getattr(given, "__defaults__", None) or ()]
+    named = _named(getattr(given, "__kwdefaults__", None) or {})
+    return repr((name, _code(code) if isinstance(code, CodeType) else None, defaults, named, held))
+
+
+def _named(values: Mapping[str, Any]) -> list[tuple[str, str]]:
+    return [(name, _value(values[name])) for name in sorted(values)]
+
+
+def _value(given: Any) -> str:
+    """What a function holds: another function by its text, an array by its bytes, anything else as it prints."""
+    if isinstance(given, np.ndarray):
+        return digest([repr((given.dtype.str, given.shape)), given])
+    return function_text(given) if callable(given) else repr(given)
 
 
 def _code(code: CodeType) -> tuple[Any, ...]:
