@@ -10,7 +10,7 @@ import pytest
 
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.heldout import Replayed
-from tendonlab.diagnosis.answer.lone import Lone
+from tendonlab.diagnosis.answer.outlier_run import OutlierRun
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.noise import Floor
 from tendonlab.simulation.records import NominalParameter
@@ -26,7 +26,7 @@ def said(
     swing: float = 50.0,
     stated: NominalParameter | None = None,
     drift: Drift | None = None,
-    lone: Lone | None = None,
+    outlier: OutlierRun | None = None,
 ) -> tuple[str, ...]:
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
     free: Any = SimpleNamespace(name="inertia", value=lambda x: 0.02 * float(np.exp(x)))
@@ -43,7 +43,7 @@ def said(
         prepared=[SimpleNamespace(measured=swing * np.sqrt(2.0) * np.sin(time)[None])],
     )
     stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
-    return caveats(case, final, stages, FLOOR, [0], drift, lone)
+    return caveats(case, final, stages, FLOOR, [0], drift, outlier)
 
 
 def _of(error: float) -> Replayed:
@@ -89,7 +89,7 @@ def test_friction_that_changed_over_the_session_is_named() -> None:
 
 
 def test_a_run_that_alone_differs_is_named() -> None:
-    (text,) = said(lone=Lone(2, "run-4", 3.61, 1.0))
+    (text,) = said(outlier=OutlierRun(2, "run-4", 3.61, 1.0))
     assert text.startswith(
         "Of the training runs, run-4 alone leaves an error of 1.9 noise floors; the others leave 1. The verdict"
     )

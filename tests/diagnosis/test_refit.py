@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tendonlab.diagnosis.search import refit as refits
-from tendonlab.diagnosis.search.refit import SKETCH, _cooled, more_evident, restarted
+from tendonlab.diagnosis.search.refit import SKETCH, _annealed, more_evident, restarted
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
@@ -126,11 +126,13 @@ def tuned() -> Any:
 def test_the_start_from_believed_values_leaves_out_what_was_tuned(monkeypatch: pytest.MonkeyPatch) -> None:
     posed: dict[str, Any] = {}
     monkeypatch.setattr(refits, "pose", lambda case, floor, system, added: posed.update(system=system, added=added))
-    monkeypatch.setattr(refits, "cooled", lambda problem, cancel: SimpleNamespace(system="cooled", initial=((1.0,),)))
+    monkeypatch.setattr(
+        refits, "annealed", lambda problem, cancel: SimpleNamespace(system="annealed", initial=((1.0,),))
+    )
     rig: Any = Rig("inertia", "added")  # no friction: what was tuned of it is left out
     fits: Any = Fits()
     fits.floor = fits.cancel = None
-    assert _cooled(fits, tuned(), rig, ("a", "b")) == ("cooled", ((1.0,),))
+    assert _annealed(fits, tuned(), rig, ("a", "b")) == ("annealed", ((1.0,),))
     assert posed == {"system": {"inertia": 2.0}, "added": ("a", "b")}
 
 

@@ -16,7 +16,7 @@ from tendonlab.fitting import problem as problem_module
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter, pose
-from tendonlab.fitting.starts import STEPS, cooled
+from tendonlab.fitting.starts import STEPS, annealed
 from tendonlab.rehearsal.build import simulated_rig
 
 
@@ -57,7 +57,7 @@ class Fits:
 )
 def test_cooling_goes_on_while_the_misfit_halves(misfits: list[float], levels: list[float]) -> None:
     fits = Fits(*misfits)
-    cooled(fits, _core.Cancel())  # type: ignore[arg-type]
+    annealed(fits, _core.Cancel())  # type: ignore[arg-type]
     assert fits.levels == pytest.approx(levels)
     assert fits.started == (f"ended at {misfits[len(levels)]}", (misfits[len(levels)],))
 

@@ -14,7 +14,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter, pose
-from tendonlab.fitting.starts import cooled
+from tendonlab.fitting.starts import annealed
 
 ROUGH, NEARLY = 8, 1e-4  # iterations and tolerance of the fit under white noise, of which only the residuals are used
 
@@ -26,7 +26,7 @@ def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
     fit = fitter.fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
     problem = pose(case, fitter.floor, fit.system, initial=fit.initial)
     fit = problem.reseated(fit, cancel, max_iterations=ROUGH, tolerance=NEARLY)
-    return cooled(pose(case, fitter.floor, case.system), cancel).linearise() if any(fit.at_bound) else fit
+    return annealed(pose(case, fitter.floor, case.system), cancel).linearise() if any(fit.at_bound) else fit
 
 
 def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> Fitter:

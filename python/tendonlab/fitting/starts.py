@@ -14,7 +14,7 @@ NUM_COOLINGS, STEPS = 6, 5  # fits under noise as large as the misfit, at the mo
 COOLED = 0.01  # relative change of the cost at which a cooling ends: all that counts is whether it halves the misfit
 
 
-def cooled(problem: Problem, cancel: _core.Cancel) -> Problem:
+def annealed(problem: Problem, cancel: _core.Cancel) -> Problem:
     """The problem where fits under noise as large as the misfit end, as long as each halves the misfit.
 
     Under so much noise, parameters that the data hardly determine stay at their starts, and no single event of sticking

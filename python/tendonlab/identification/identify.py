@@ -22,7 +22,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Problem, finer, pose
-from tendonlab.fitting.starts import cooled
+from tendonlab.fitting.starts import annealed
 from tendonlab.identification.result import Identification
 from tendonlab.progress import track
 from tendonlab.seed import generator
@@ -160,7 +160,7 @@ def _solve(starts: Sequence[Problem], *, progress: bool) -> Fitted:
 
 
 def _solved(start: Problem, cancel: _core.Cancel) -> Fitted:
-    return start.reseated(cooled(start, cancel).solve(cancel=cancel), cancel, steps=STATE_STEPS)
+    return start.reseated(annealed(start, cancel).solve(cancel=cancel), cancel, steps=STATE_STEPS)
 
 
 def _best(jobs: Sequence[Future[Fitted]]) -> Fitted:

@@ -17,8 +17,8 @@ from tendonlab.diagnosis.answer.explore import explore
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
-from tendonlab.diagnosis.answer.lone import Lone, lone_run
 from tendonlab.diagnosis.answer.next_experiments import advise
+from tendonlab.diagnosis.answer.outlier_run import OutlierRun, find_outlier_run
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
 from tendonlab.diagnosis.discrepancy import followed, scattered
@@ -47,9 +47,9 @@ def answer(
         floor = floor.reached_by(heldout.rms(steps[-1]))
     stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
     drift = over_session(case, search.final)
-    lone = None if search.selected else lone_run(case, search.tuned, floor)
+    outlier = None if search.selected else find_outlier_run(case, search.tuned, floor)
     near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
-    levels = _levels(search, nominal, stages, near, floor, drift, lone)
+    levels = _levels(search, nominal, stages, near, floor, drift, outlier)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
     verdict = calibration.applied(raw)
     held_out = _per_experiment(case, stages, floor, judged)
@@ -76,7 +76,7 @@ def answer(
         shrinkage=_shrinkage(case, stages, floor, judged, seed),
         next_experiments=proposed,
         references=references,
-        caveats=caveats(case, search.final, stages, floor, judged, drift, lone),
+        caveats=caveats(case, search.final, stages, floor, judged, drift, outlier),
         warnings=(
             *notes.warnings(case, floor, search),
             *notes.not_simulated(failed),
@@ -113,7 +113,7 @@ def _levels(
     near: dict[str, Replayed],
     floor: Floor,
     drift: Drift | None,
-    lone: Lone | None = None,
+    outlier: OutlierRun | None = None,
 ) -> Levels:
     case, final, doubtful = search.fitter.case, search.final, not floor.repeated
     levels = Levels(
@@ -130,7 +130,7 @@ def _levels(
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
         drifted=drift.chance if drift and drift.tells else 1.0,
     )
-    return lone.left_out(levels, nominal) if lone else levels
+    return outlier.left_out(levels, nominal) if outlier else levels
 
 
 def _splits(case: Case) -> list[tuple[str, Sequence[int]]]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
-from tendonlab.diagnosis.answer.lone import Lone
+from tendonlab.diagnosis.answer.outlier_run import OutlierRun
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -27,7 +27,7 @@ def caveats(
     floor: Floor,
     judged: Sequence[int],
     drift: Drift | None = None,
-    lone: Lone | None = None,
+    outlier: OutlierRun | None = None,
 ) -> tuple[str, ...]:
     """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal,
     friction that changed over the session, a run that differs from all others."""
@@ -36,7 +36,7 @@ def caveats(
         *_worse(stages, floor, final.added),
         *_drowned(case, floor, judged),
         *_drifted(case, drift),
-        *_differs(lone),
+        *_differs(outlier),
     )
 
 
@@ -82,13 +82,13 @@ def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
     return said
 
 
-def _differs(lone: Lone | None) -> list[str]:
-    if lone is None:
+def _differs(outlier: OutlierRun | None) -> list[str]:
+    if outlier is None:
         return []
-    error, rest = np.sqrt(lone.level), np.sqrt(lone.others)
+    error, rest = np.sqrt(outlier.level), np.sqrt(outlier.others)
     return [
-        f"Of the training runs, {lone.name} alone leaves an error of {error:.2g} noise floors; the others leave "
-        f"{rest:.2g}. The verdict does not count {lone.name}. Where a mechanism stops may depend on noise alone, or "
+        f"Of the training runs, {outlier.name} alone leaves an error of {error:.2g} noise floors; the others leave "
+        f"{rest:.2g}. The verdict does not count {outlier.name}. Where a mechanism stops may depend on noise alone, or "
         "something happened in that run: look at it."
     ]
 

@@ -11,7 +11,7 @@ from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter, pose
-from tendonlab.fitting.starts import cooled
+from tendonlab.fitting.starts import annealed
 from tendonlab.simulation.system import System
 
 MAX_ITERATIONS = 45
@@ -102,7 +102,7 @@ def _fit(
     goal = _goal(fitter, base, best, pace)
     system, initial = extended(base.system, effect), base.initial
     if from_nominal:
-        system, initial = _cooled(fitter, base, system, added)
+        system, initial = _annealed(fitter, base, system, added)
     fit = fitter.fit(system, added=added, initial=initial, max_iterations=MAX_ITERATIONS, goal=goal, goal_within=SKETCH)
     return fitter.releveled(fit), fit if fit.cost <= goal else None
 
@@ -141,10 +141,10 @@ def _believed(fitter: Fitter, base: Fitted, system: System) -> System:
     return system.with_parameters({f.name: f.value(f.mean) for f in free})
 
 
-def _cooled(
+def _annealed(
     fitter: Fitter, base: Fitted, system: System, added: Sequence[str]
 ) -> tuple[System, tuple[tuple[float, ...], ...]]:
     """A start from the nominal values."""
     believed = _believed(fitter, base, system)
-    there = cooled(pose(fitter.case, fitter.floor, believed, added=added), fitter.cancel)
+    there = annealed(pose(fitter.case, fitter.floor, believed, added=added), fitter.cancel)
     return there.system, there.initial

@@ -19,7 +19,7 @@ FAR_ALONE = 5.0  # whitened mean square of a single run that is no noise: of rig
 
 
 @dataclass(frozen=True)
-class Lone:
+class OutlierRun:
     """The `run`, a training experiment, that alone leaves more than noise: a mean square of `level`; all others of
     `others`."""
 
@@ -33,7 +33,7 @@ class Lone:
         return replace(levels, nominal=_without(nominal, self.run), tuned=self.others)
 
 
-def lone_run(case: Case, tuned: Fitted, floor: Floor) -> Lone | None:
+def find_outlier_run(case: Case, tuned: Fitted, floor: Floor) -> OutlierRun | None:
     """The training experiment without which the refitted simulator is at the floor; None where there is none, or where
     that one run is far above all noise. Only repeats tell a floor well enough."""
     if not floor.repeated or len(tuned.runs) < ENOUGH or tuned.mean_square < NEAR_FLOOR:
@@ -43,7 +43,7 @@ def lone_run(case: Case, tuned: Fitted, floor: Floor) -> Lone | None:
     level, rest = levels[run], _without(tuned, run)
     if not NEAR_FLOOR < level < FAR_ALONE or rest > NO_GAP:
         return None
-    return Lone(run, case.experiments[case.train[run]].name, level, rest)
+    return OutlierRun(run, case.experiments[case.train[run]].name, level, rest)
 
 
 def _without(fit: Fitted, run: int) -> float:

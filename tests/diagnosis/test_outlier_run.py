@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab.diagnosis.answer.lone import Lone, lone_run
+from tendonlab.diagnosis.answer.outlier_run import OutlierRun, find_outlier_run
 from tendonlab.diagnosis.answer.verdict import Levels, decide
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.fitting.noise import Floor
@@ -25,17 +25,17 @@ def fit_of(*levels: float, own: float = 0.0) -> Any:
     return SimpleNamespace(runs=runs, mean_square=float(np.mean(levels)))
 
 
-def found(*levels: float, floor: Floor = FLOOR) -> Lone | None:
+def found(*levels: float, floor: Floor = FLOOR) -> OutlierRun | None:
     names = [SimpleNamespace(name=f"run-{k}") for k in range(1, len(levels) + 2)]
     case: Any = SimpleNamespace(experiments=names, train=range(1, len(levels) + 1))  # the first one is held out
-    return lone_run(case, fit_of(*levels), floor)
+    return find_outlier_run(case, fit_of(*levels), floor)
 
 
 def test_the_run_that_alone_leaves_more_than_noise_is_named() -> None:
-    lone = found(1.0, 1.1, 3.6, 1.1, 1.0)
-    assert lone is not None
-    assert (lone.run, lone.name) == (2, "run-4")
-    assert (lone.level, lone.others) == (pytest.approx(3.6), pytest.approx(1.05))
+    outlier = found(1.0, 1.1, 3.6, 1.1, 1.0)
+    assert outlier is not None
+    assert (outlier.run, outlier.name) == (2, "run-4")
+    assert (outlier.level, outlier.others) == (pytest.approx(3.6), pytest.approx(1.05))
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_elsewhere_no_run_is_left_out(levels: tuple[float, ...]) -> None:
 def test_friction_that_differs_from_run_to_run_counts() -> None:
     """Residuals alone are at the floor: what the runs' own friction costs is not."""
     case: Any = SimpleNamespace(experiments=[], train=range(5))
-    assert lone_run(case, fit_of(1.4, 1.4, 1.5, 1.4, 1.4, own=0.3), FLOOR) is None
+    assert find_outlier_run(case, fit_of(1.4, 1.4, 1.5, 1.4, 1.4, own=0.3), FLOOR) is None
 
 
 def test_without_repeats_no_run_is_left_out() -> None:
@@ -65,10 +65,10 @@ def test_without_repeats_no_run_is_left_out() -> None:
 
 @pytest.mark.parametrize(("nominal", "verdict"), [(1.0, "no_gap"), (40.0, "parameters_only")])
 def test_the_others_decide(nominal: float, verdict: str) -> None:
-    lone, levels = found(1.0, 1.1, 3.6, 1.1, 1.0), (1.0, 1.1, 3.6, 1.1, 1.0)
-    assert lone is not None
+    outlier, levels = found(1.0, 1.1, 3.6, 1.1, 1.0), (1.0, 1.1, 3.6, 1.1, 1.0)
+    assert outlier is not None
     contest: Any = Round((), (), (), {None: 1.0}, None, frozenset())
     whole = Levels(nominal=nominal * 1.56, tuned=1.56, refitted=1.1, explained=None, left=1.1, repeated=True)
     assert decide([contest], (), whole).verdict == "unknown_effect"
-    others = lone.left_out(whole, fit_of(*(nominal * level for level in levels)))
+    others = outlier.left_out(whole, fit_of(*(nominal * level for level in levels)))
     assert decide([contest], (), others).verdict == verdict
