@@ -1,6 +1,8 @@
 """Delays that are shorter than stamps can tell are no answer."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +25,15 @@ def delayed(fitter: Fitter, steps: float) -> Fitted:
 @pytest.mark.parametrize(("steps", "is_told"), [(0.2 * LEAST, False), (2.0 * LEAST, True)])
 def test_a_delay_counts_from_a_part_of_a_step_on(fitter: Fitter, steps: float, is_told: bool) -> None:
     assert (trouble_with_delays(fitter.case, delayed(fitter, steps), NAME) == "") is is_told
+
+
+def test_a_system_that_answers_by_samples_may_do_so_half_a_sample_late(fitter: Fitter) -> None:
+    """Its stamps tell as much as those of any other, and yet a delay of a third of a step is none."""
+    late = delayed(fitter, 0.33)
+    by_samples: Any = SimpleNamespace(dof=0, effect=fitter.case.system.info.effect)
+    system: Any = SimpleNamespace(info=by_samples)
+    assert trouble_with_delays(fitter.case, late, NAME) == ""
+    assert "finer than logs" in trouble_with_delays(replace(fitter.case, system=system), late, NAME)
 
 
 def test_logs_that_were_thinned_had_finer_stamps(fitter: Fitter) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from tendonlab._core import Free
 from tendonlab.fitting.priors import AMPLITUDE_SD, SHAPE_LOG_SD, Scale, free_parameters, start_of
+from tendonlab.papers import s2
 from tendonlab.simulation.records import NominalParameter
 from tendonlab.simulation.system import System
 
@@ -137,3 +138,12 @@ def test_the_unit_of_a_dimension_is_made_of_what_was_seen() -> None:
     assert [of.of(d) for d in ("effort", "flow", "displacement", "stiffness", "damping", "ratio")] == [
         6.0, 0.5, 2.0, 3.0, 12.0, 1.0,
     ]  # fmt: skip
+
+
+def test_a_shape_that_may_have_either_sign_is_no_logarithm() -> None:
+    """Where the branches of a bushing meet: typically at the middle, in radians."""
+    rows = free_parameters(
+        s2.system(s2.constants()), {}, {"bushing_2": Scale(1.0, 1.0, 1.0)}, added=["bushing_2:bushing_branches"]
+    )
+    meeting = next(f for f in rows if f.name == "bushing_2_c1")
+    assert (meeting.log, meeting.scale, meeting.sd) == (False, 1.0, AMPLITUDE_SD)

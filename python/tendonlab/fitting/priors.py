@@ -78,11 +78,12 @@ def free_parameters(
     for index, p in enumerate(info.parameters):
         if p.name not in system.parameters or p.purpose == "share":
             continue
-        scale = (of.get(p.element or "") or next(iter(of.values()))).of(p.dimension) * abs(p.typical)
+        unit = (of.get(p.element or "") or next(iter(of.values()))).of(p.dimension)
+        scale = unit * abs(p.typical)
         if p.name in new and p.purpose == "condition":
             continue
         if p.name in new:
-            rows.append(_effect_parameter(index, p, scale, system.parameters[p.name]))
+            rows.append(_effect_parameter(index, p, scale or unit, system.parameters[p.name]))
             continue
         stated = nominal.get(p.name)
         if stated is None or stated.sd == 0 or (stated.sd is None and _known_by_default(p, stated.value)):
@@ -136,10 +137,11 @@ def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, s
 
 
 def _effect_parameter(index: int, p: ParameterInfo, scale: float, value: float) -> Free:
-    shape = p.purpose == "shape"
+    """By its logarithm, if it is a shape that is typically positive."""
+    logarithm = p.purpose == "shape" and p.typical > 0
     return Free(
-        name=p.name, index=index, log=shape, scale=scale, start=value, mean=0.0,
-        sd=SHAPE_LOG_SD if shape else AMPLITUDE_SD, lower=p.lower, upper=p.upper,
+        name=p.name, index=index, log=logarithm, scale=scale, start=value, mean=0.0,
+        sd=SHAPE_LOG_SD if logarithm else AMPLITUDE_SD, lower=p.lower, upper=p.upper,
     )  # fmt: skip
 
 

@@ -1,7 +1,8 @@
 """Delays shorter than anything that logs tell of time.
 
 Stamps have a resolution, and whether a controller's command or reference is held, averaged or straight between its
-samples is known to a part of a sample at best: each of these looks like a short delay."""
+samples is known to a part of a sample at best: each of these looks like a short delay. A system without degrees of
+freedom answers sample by sample, where the real one may answer half a sample earlier or later."""
 
 from __future__ import annotations
 
@@ -11,15 +12,18 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 
 LEAST = 0.05  # of the step of the logs
-TOO_SHORT = "its delay of {:.2g} ms is shorter than {:.0f} % of the step of the logs, finer than their stamps tell time"
+LEAST_BY_SAMPLES, LONGEST = 0.5, 1e-3  # the same where a system answers sample by sample, s at most
+TOO_SHORT = "its delay of {:.2g} ms is shorter than {:.2g} ms, finer than logs with steps of {:.2g} ms tell time"
 
 
 def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
     """Why the fit does not tell of the `effect`, where that is a delay of next to nothing; else "". Logs that were
     thinned had finer stamps."""
-    name = case.system.info.effect(effect)
-    if name.effect != "delay" or any(e.averaged for e in case.experiments):
+    info = case.system.info
+    law = info.effect(effect)
+    if law.effect != "delay" or any(e.averaged for e in case.experiments):
         return ""
-    delay = fitted.system.parameters[name.parameters[0]]
     step = float(np.median([np.median(np.diff(e.time)) for e in case.experiments]))
-    return TOO_SHORT.format(1e3 * delay, 100 * LEAST) if delay < LEAST * step else ""
+    least = LEAST * step if info.dof else min(LEAST_BY_SAMPLES * step, LONGEST)
+    delay = fitted.system.parameters[law.parameters[0]]
+    return TOO_SHORT.format(*(1e3 * t for t in (delay, least, step))) if delay < least else ""
