@@ -86,17 +86,18 @@ class Results:
         return {s: [_count(part[part["system"] == s], row) for part in self.parts.values()] for s in systems}
 
     def means(self) -> dict[str, list[tuple[float, int]]]:
-        """Means, each with its number of cases, without and with repeats."""
+        """Means, each with its number of cases, without and with repeats; those of no case are left out."""
 
         def mean(column: str, least: float) -> list[tuple[float, int]]:
             values = [part[column][_between(least)(part)].dropna() for part in self.parts.values()]
             return [(float(of.mean()) if len(of) else float("nan"), len(of)) for of in values]
 
-        return {
+        of_all = {
             "probability of the true effect, its twins included, gap/noise ≥ 1": mean("true_probability", WEAK),
             "ranked first, a group of at most three counted as 1/size, gap/noise ≥ 1": mean("ranked_share", WEAK),
             "share of the effects' parameters whose 95 % interval holds the truth": mean("covered", 0.0),
         }
+        return {quantity: both for quantity, both in of_all.items() if any(num for _, num in both)}
 
     def confusion(self) -> pd.DataFrame:
         """True verdicts in rows, told ones in columns: counts."""

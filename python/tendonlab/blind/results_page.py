@@ -43,15 +43,18 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     yield f"{intervals} [The protocol](blind.md) says what is drawn and what counts."
     yield "## Shares"
     yield _table(["quantity", *columns], [[q, *map(_share, both)] for q, both in found.shares().items()])
-    rows = [[q, *(f"{mean:.2f} (of {num})" if num else "–" for mean, num in both)] for q, both in found.means().items()]
-    yield _table(["mean", *columns], rows)
+    means = found.means()
+    rows = [[q, *(f"{mean:.2f} (of {num})" if num else "–" for mean, num in both)] for q, both in means.items()]
+    if rows:
+        yield _table(["mean", *columns], rows)
     yield "## Verdicts"
     rows = [[name, *map(_share, both)] for name, both in found.by_system().items()]
     yield _table(["verdict right", *columns], rows)
     confusion = found.confusion()
     yield _table(["truth (rows), told (columns)", *confusion.columns], [[n, *r] for n, r in confusion.iterrows()])
-    yield "## Strength of the missing effect"
-    yield images["blind-strength"]
+    if len(found.single()):
+        yield "## Strength of the missing effect"
+        yield images["blind-strength"]
     yield "## Probabilities"
     yield images["blind-reliability"]
     yield (
