@@ -38,10 +38,17 @@ def test_one_that_the_log_contradicts_is_not(rig: Dataset, name: str, factor: fl
     assert choose_replay(wrong, wrong.system()).kind == "injection"
 
 
-@pytest.mark.parametrize("sample_time", [0.0, 0.0005])
-def test_nothing_is_compared_where_the_log_cannot_tell(rig: Dataset, sample_time: float) -> None:
-    """In continuous time, or where the controller reads more often than the logs."""
-    unknown = stated(rig, sample_time=sample_time, kd=0.0)
+@pytest.mark.parametrize(("changes", "is_believed"), [({}, True), ({"kd": 0.0}, False), ({"kp": 1.5}, False)])
+def test_in_continuous_time_too_gains_are_compared(rig: Dataset, changes: dict[str, float], is_believed: bool) -> None:
+    """The clock is not stated: what is smooth in both commands still tells the gains."""
+    gains = {name: factor * getattr(rig.controller, name) for name, factor in changes.items()}
+    given = stated(rig, sample_time=0.0, **gains)
+    assert (missed_command(given, given.system()) < 0.1) == is_believed
+    assert (choose_replay(given, given.system()).kind == "controller") == is_believed
+
+
+def test_nothing_is_compared_where_the_controller_reads_more_often_than_the_logs(rig: Dataset) -> None:
+    unknown = stated(rig, sample_time=0.0005, kd=0.0)
     assert missed_command(unknown, unknown.system()) == 0.0
     assert choose_replay(unknown, unknown.system()).kind == "controller"
 

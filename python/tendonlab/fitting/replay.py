@@ -11,6 +11,8 @@ from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of
 from tendonlab.simulation.command import command_of, fed_noise
 from tendonlab.simulation.prepare import Replay
+from tendonlab.simulation.records import Controller, Experiment
+from tendonlab.simulation.signals import spline_near
 from tendonlab.simulation.system import System
 
 UNEXPLAINED, SHOWN = 0.1, 10.0  # share of the effort that no model explains, and by how many times the noise it shows
@@ -56,23 +58,39 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
 
 def missed_command(dataset: Dataset, system: System) -> float:
     """How far the stated controller's command is from the logged one: the rms of the difference over that of the
-    command, the median over the training experiments. 0 where nothing can be compared: without controller, clock or
-    logs, or where the logs are not sampled at the clock of the controller."""
-    controller, shares = dataset.controller, []
-    if controller is None or controller.sample_time <= 0 or not system.info.commanded:
+    command, the median over the training experiments. In continuous time of what is smooth in both: the noise that the
+    controller hears between two samples was not logged. 0 where nothing can be compared: without controller or logs, or
+    where the logs are not sampled at the clock of the controller."""
+    controller = dataset.controller
+    if controller is None or not system.info.commanded:
         return 0.0
     command = system.info.inputs[0].name
-    for e in dataset.train:
-        wanted = {command, controller.measured, controller.reference} | ({controller.disturbance} - {None})
-        values = e.data[[str(name) for name in wanted]].to_numpy(dtype=float) if wanted <= set(e.data.columns) else None
-        steps = np.abs(np.diff(e.time) / controller.sample_time - 1.0)
-        if values is None or np.median(steps) > SAME_CLOCK or not np.isfinite(values).all(axis=1).any():
-            continue
-        filled = replace(e, data=e.data.interpolate(method="index", limit_direction="both"))
-        asked = command_of(controller, filled, filled.data[controller.measured].to_numpy(dtype=float))
-        logged = filled.data[command].to_numpy(dtype=float)
-        shares.append(float(np.sqrt(np.mean((logged - asked) ** 2) / max(np.mean(logged**2), 1e-300))))
+    shares = [share for e in dataset.train if (share := _missed(controller, e, command)) is not None]
     return float(np.median(shares)) if shares else 0.0
+
+
+def _missed(controller: Controller, experiment: Experiment, command: str) -> float | None:
+    """The same in one experiment; None where nothing can be compared."""
+    wanted = [command, controller.measured, controller.reference, *({controller.disturbance} - {None})]
+    data = experiment.data
+    if not set(wanted) <= set(data.columns) or not np.isfinite(data[wanted].to_numpy(dtype=float)).all(axis=1).any():
+        return None
+    steps = np.abs(np.diff(experiment.time) / controller.sample_time - 1.0) if controller.sample_time > 0 else 0.0
+    if np.median(steps) > SAME_CLOCK:
+        return None
+    filled = replace(experiment, data=data.interpolate(method="index", limit_direction="both"))
+    reading = filled.data[controller.measured].to_numpy(dtype=float)
+    logged = filled.data[command].to_numpy(dtype=float)
+    is_continuous = controller.sample_time <= 0
+    read = _smooth(experiment.time, reading) if is_continuous else reading
+    missed = logged - command_of(controller, filled, read)
+    if is_continuous:
+        missed = _smooth(experiment.time, missed)
+    return float(np.sqrt(np.mean(missed**2) / max(np.mean(logged**2), 1e-300)))
+
+
+def _smooth(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return np.asarray(spline_near(time, values)(time))
 
 
 def _frequency_below(time: np.ndarray, values: np.ndarray, share: float = 0.95) -> float:
