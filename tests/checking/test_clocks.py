@@ -39,6 +39,12 @@ def test_no_lag_is_no_finding() -> None:
     assert findings([[0.0, 1e-4, -1e-4, 0.0, 5e-5]]) == []
 
 
+def test_one_experiment_alone_lags_no_other() -> None:
+    """Nothing is known of others, so nothing is averaged over them: no warning of numpy."""
+    lags = lags_of(("angle",), np.array([[0.03]]), np.array([100.0]), scanned=(90.0,))
+    assert not any(f.blocks for f in clock_findings(lags, NAMES[:1], ["motor_torque"], STEP))
+
+
 @pytest.mark.parametrize(("seconds", "verb"), [(0.05, "lags"), (-0.05, "leads")])
 def test_one_experiment_that_lags_blocks(seconds: float, verb: str) -> None:
     (found,) = findings([[0.0, 0.0, seconds, 0.0, 0.0]])

@@ -72,6 +72,15 @@ def test_exact_twins_end_with_one_evidence(fitter: Fitter, nominal: Fitted) -> N
     assert restarted(fitter, nominal, poor, leader).counted().evidence >= best
 
 
+def test_a_leader_that_replaced_a_whole_friction_shares_what_it_still_has(fitter: Fitter, nominal: Fitted) -> None:
+    """Parameters of the friction that it replaced are not there to be taken over."""
+    lacking = fitter.case.system.with_parameters(nominal.system.parameters)
+    rest = {k: v for k, v in lacking.parameters.items() if k != "joint_coulomb"}
+    bare = replace(lacking, parameters=rest, effects=tuple(e for e in lacking.effects if e != "joint:coulomb"))
+    leader = replace(nominal, system=bare)
+    assert restarted(fitter, nominal, leader, nominal).counted().evidence >= nominal.counted().evidence
+
+
 class Fits:
     """A fitter that notes what it is asked for; its fits have the costs and misfits that are stated in turn."""
 

@@ -195,6 +195,13 @@ def test_samples_hold_what_the_data_do_not_move(fit: Any) -> None:
         fit.samples(0)
 
 
+def test_samples_of_parameters_that_all_stay_are_their_values(fit: Any) -> None:
+    drawn = replace(fit, parameters=fit.parameters.assign(at_bound=True)).samples(3)
+    assert drawn.shape == (3, len(fit.parameters))
+    for name in drawn:
+        assert (drawn[name] == fit.values[name]).all()
+
+
 def test_samples_outside_the_bounds_are_drawn_anew() -> None:
     free = Free(name="coulomb", index=0, log=False, scale=0.5, start=0.1, lower=0.0, upper=0.3)
     wide = samples([free], np.array([0.1]), np.array([0.2]), np.eye(1), num=500, random=np.random.default_rng(0))

@@ -178,6 +178,8 @@ def test_what_may_imitate_the_unknown_is_not_called_established(with_effect: Dia
     doubtful = tuple(replace(finding, probability=0.1) for finding in with_effect.effects)
     partly = replace(with_effect, verdict="unknown_effect", explained=0.32)
     assert "Stribeck friction at the joint is established and explains 32 % of" in partly.sentence
+    assert "and held-out experiments are at the noise floor" in replace(partly, explained=None).sentence
+    assert "but explains nothing of the excess error" in replace(partly, explained=0.0).sentence
     assert replace(partly, effects=doubtful).sentence.startswith(
         "The library explains only a part of the gap. Stribeck friction at the joint helps on the training experiments "
         "and explains 32 % of the excess error; it may only imitate what is unknown, so compare the fitted values "

@@ -73,6 +73,14 @@ def test_a_reference_with_a_gap_is_refused() -> None:
         closed.simulate(frame)
 
 
+def test_a_payload_adds_to_what_an_experiment_states() -> None:
+    """As in fits: the condition fixes the parameter, and the payload comes on top."""
+    run = Experiment(name="run", data=PUSHED, conditions={"inertia": 0.03, "temperature": 31.0}, add={"inertia": 0.01})
+    assert SIM.under(run).parameters["inertia"] == pytest.approx(0.04)
+    loaded = replace(run, conditions={})
+    assert SIM.under(loaded).parameters["inertia"] == pytest.approx(0.03)
+
+
 def test_changes_leave_the_original_as_it_was() -> None:
     stribeck = {"static_excess": 0.1, "joint_stribeck_velocity": 0.05}  # own and full names
     changed = SIM.with_parameters({"inertia": 0.03}).with_effects({"joint:stribeck": stribeck})
