@@ -11,7 +11,7 @@ from tendonlab.checking.equation import Equation, Stretch
 from tendonlab.checking.logs import Logs
 from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown, fit, growth, impossible
 from tendonlab.data import NominalParameter
-from tendonlab.fitting.priors import DAMPING_LOG_SD, LOG_SD
+from tendonlab.fitting.priors import default_log_sd, known_by_default
 from tendonlab.simulation.catalog import ParameterInfo
 
 NUDGE = 1e-3  # relative change by which a column is found
@@ -121,7 +121,7 @@ def _gain(
     if abs(strongest) < LEAST_POWER:
         return None
     column = power[:, None] * residual - slope * stated.value
-    sd = _default_sd(p) if stated.sd is None else stated.sd / abs(stated.value)
+    sd = default_log_sd(p) if stated.sd is None else stated.sd / abs(stated.value)
     return Unknown(p.name, sd=sd, logarithm=True), column * np.sign(strongest)
 
 
@@ -154,23 +154,18 @@ def _is_free(p: ParameterInfo, stated: NominalParameter) -> bool:
     """Whether a parameter may differ from its nominal value; a gain or ratio without `sd` is taken at its word."""
     if p.purpose in ("share", "condition") or stated.sd == 0:
         return False
-    known = p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
-    return stated.sd is not None or not (known or (stated.value == 0.0 and p.typical == 0.0))
+    return stated.sd is not None or not known_by_default(p, stated.value)
 
 
 def _believed(p: ParameterInfo, stated: NominalParameter, slope: np.ndarray, size: np.ndarray) -> Column:
     """What is believed of a parameter: of its logarithm where it cannot be negative, as in a fit. `slope` is relative
     to the equations' `size`."""
     scale = abs(stated.value) or EXTRA / (float(np.max(np.sqrt(np.mean(slope**2, axis=1)))) or 1.0)
-    sd = _default_sd(p) if stated.sd is None else stated.sd / scale
+    sd = default_log_sd(p) if stated.sd is None else stated.sd / scale
     if not stated.value:
         sd = 1.0 if stated.sd is None else sd
         return Unknown(p.name, sd=sd, positive=p.lower >= 0), slope * scale * size[:, None]
     return Unknown(p.name, sd=sd, logarithm=p.lower >= 0 and stated.value > 0), slope * scale * size[:, None]
-
-
-def _default_sd(p: ParameterInfo) -> float:
-    return DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
 
 
 def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column]:

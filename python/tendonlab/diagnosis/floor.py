@@ -12,7 +12,7 @@ from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case, fine_enough
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
-from tendonlab.fitting.noise import white
+from tendonlab.fitting.noise import Floor, white
 from tendonlab.fitting.problem import Fitter, pose
 from tendonlab.fitting.starts import annealed
 
@@ -33,11 +33,17 @@ def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cance
     """The fitter under the noise floor: from repeats, else from the residuals of a rough fit.
 
     Friction then varies from run to run as the floor says, and the simulator is as exact as the floor requires."""
-    seen = _sensitivities(case, rough, pool)
-    floor = estimate(case, seen, case.train)
+    floor, seen = first_floor(case, rough, pool)
     groups = tuple((tuple(group), floor.tau) for group in friction_groups(case.system, with_added=True))
     case = fine_enough(case, np.fmax(case.noise, np.fmin(floor.rms, floor.sd)))
     return Fitter(replace(case, scatter=groups), floor, cancel, seen)
+
+
+def first_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor) -> tuple[Floor, list[Sensitivities]]:
+    """The noise floor that the residuals of a rough fit, or their differences between repeats, show; and what was seen
+    of every experiment."""
+    seen = _sensitivities(case, rough, pool)
+    return estimate(case, seen, case.train), seen
 
 
 def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:
@@ -53,6 +59,7 @@ def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fi
 
 
 def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list[Sensitivities]:
+    """Of every experiment at a model; nothing is known of a held-out one that cannot be simulated."""
     initial = dict(zip(case.train, fitted.initial, strict=True))
 
     def seen(i: int) -> Sensitivities:

@@ -86,7 +86,7 @@ def free_parameters(
             rows.append(_effect_parameter(index, p, scale or unit, system.parameters[p.name]))
             continue
         stated = nominal.get(p.name)
-        if stated is None or stated.sd == 0 or (stated.sd is None and _known_by_default(p, stated.value)):
+        if stated is None or stated.sd == 0 or (stated.sd is None and known_by_default(p, stated.value)):
             continue
         rows.append(_nominal_parameter(index, p, stated, scale))
     if not rows:
@@ -104,11 +104,16 @@ def start_of(system: System, effect: str, of: Mapping[str, Scale]) -> dict[str, 
     return values
 
 
-def _known_by_default(p: ParameterInfo, value: float) -> bool:
+def known_by_default(p: ParameterInfo, value: float) -> bool:
     """A torque constant or gear ratio without `sd` is taken at its word: only the torques' ratio to it can be seen. So
     is 0 for what is usually not there."""
     usual = p.dimension in ("effort_per_command", "ratio") and p.purpose == "structure"
     return usual or (value == 0.0 and p.typical == 0.0)
+
+
+def default_log_sd(p: ParameterInfo) -> float:
+    """Prior sd of the logarithm of a parameter that is stated without an `sd`."""
+    return DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
 
 
 def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, scale: float) -> Free:
@@ -128,8 +133,8 @@ def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, s
         )
 
     if p.lower >= 0 and stated.value > 0:
-        default = DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
-        return free(stated.value, 0.0, default if stated.sd is None else stated.sd / stated.value, log=True)
+        sd = default_log_sd(p) if stated.sd is None else stated.sd / stated.value
+        return free(stated.value, 0.0, sd, log=True)
     usual = max(AMPLITUDE_SD * scale, LOG_SD * abs(stated.value))
     if stated.sd is None or math.isinf(stated.sd):  # inf: nothing is believed, and the scale only measures
         return free(usual, stated.value / usual, 1.0 if stated.sd is None else math.inf)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,10 +10,9 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset
-from tendonlab.diagnosis.floor import rough_fit
+from tendonlab.diagnosis.floor import first_floor, rough_fit
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.floor import estimate, sensitivities
 from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of
 
 if TYPE_CHECKING:
@@ -88,13 +88,8 @@ def floor_of_repeats(rig: Dataset, case: Case) -> Floor | None:
     labels = [e.repeat for e in rig if e.repeat is not None]
     if len(labels) == len(set(labels)):
         return None
-    rough = rough_fit(case, _core.Cancel())
-    initial = dict(zip(case.train, rough.initial, strict=True))
-    seen = [
-        sensitivities(case, rough.system, i, initial.get(i, case.own_mean(i).tolist()))
-        for i in range(len(case.experiments))
-    ]
-    floor = estimate(case, seen, case.train)
+    with ThreadPoolExecutor() as pool:
+        floor, _ = first_floor(case, rough_fit(case, _core.Cancel()), pool)
     return floor if floor.repeated else None
 
 
