@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from checking.pendulum import CONSTANT, COULOMB, GRAVITY, INERTIA, MOTIONS, VISCOUS, Motion, late_run, record
+from tendonlab.checking.check import check
 from tendonlab.checking.clocks import SCANNED
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.lags import _saved, _steps, _weights, lags
@@ -26,7 +27,7 @@ def test_the_step_is_that_of_all_unknowns_at_once() -> None:
     level, share = np.sqrt(np.mean(np.square(residual / at.size[:, None]), axis=1)), np.array([0.5, 0.2])
     weight = (FREEDOM + 1) / (FREEDOM + (residual / at.size[:, None] / level[:, None]) ** 2)
     fit = Fit(0.0, x, np.ones(2), level, residual, weight, 0.0)
-    step, sd = _steps(at, fit, own, own_belief, run, share)
+    step, sd = _steps(at, fit, own, own_belief, run, share, num=3)
 
     root = np.sqrt(weight * share[:, None]) / level[:, None] / at.size[:, None]
     rows = [(columns[0] * root).ravel(), (columns[1] * np.exp(x[1]) * root).ravel()]
@@ -123,3 +124,13 @@ def test_a_run_in_presliding_leads_no_other(tmp_path: Path) -> None:
     late = lags(Equation(data, data.system()), found)
     assert late.scanned[-1] == 0.0
     assert late.gain[-1] == 0.0
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("seed", range(4))
+def test_a_run_that_never_slides_lags_no_other(seed: int, tmp_path: Path) -> None:
+    """At most single samples of it can be judged: its lag is not known, and the others are judged as without it."""
+    rig = record(motions={**MOTIONS, "still": lambda t: 3e-4 * np.sin(2.0 * t)}, seed=seed).write(tmp_path)
+    found = check(rig)
+    assert not any(f.experiment == "still" and f.problem == "clock" for f in found.findings)
+    assert not found.blocks

@@ -16,7 +16,6 @@ from .calibrating import Folders, Judged, judged
 from .scoring import SURE, score
 
 STRONG, WEAK = 3.0, 1.0  # gap/noise from which an effect is strong, and below which no more is asked than is there
-CLOSE = 0.95  # shrinkage of the gap that is as good as that of the true effect, which shrinks it by 1
 
 
 class Row(NamedTuple):
@@ -56,7 +55,6 @@ ROWS = (
     Row("mistake in the logs: right signal or run", "fault_signal", _everywhere),
     Row("right logs refused", "blocked", _everywhere),
     Row("verdict right", "verdict_hit", _everywhere),
-    Row(f"held-out gap shrinks by at least {CLOSE}, library's own form, gap/noise ≥ 3", "close", _between(STRONG)),
 )
 
 
@@ -136,8 +134,6 @@ def _scored(sealed: Path, reports: Path) -> pd.DataFrame:
     nothing = cases["false_alarm"].notna()
     cases["named"] = _only((cases["selected"] != "") | cases["failed"].astype(bool), nothing)
     cases["claimed"] = _only((cases["selected"] == "") & (cases["verdict"] == "unknown_effect"), nothing)
-    own = cases["established"].notna() & cases["is_documented_form"].eq(True)
-    cases["close"] = _only(cases["shrinkage"] >= CLOSE, own)
     return cases
 
 

@@ -56,7 +56,8 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         share = shares(fit.residual, logs.run[kept])
         slopes = slopes_of_lags(equation, moved, at.residual, kept)
         own, belief = _with_friction(equation, moved.at(kept), at, slopes)
-        step, sd = (part[: len(channels)] for part in _steps(at, fit, own, belief, logs.run[kept], share))
+        steps = _steps(at, fit, own, belief, logs.run[kept], share, num=late.shape[1])
+        step, sd = (part[: len(channels)] for part in steps)
         late = late + np.clip(step, -logs.step, logs.step)
         if np.all(np.abs(step) < CLOSE * sd):
             break
@@ -94,7 +95,9 @@ def _gain(
 
 def _weights(slopes: np.ndarray, run: np.ndarray, num: int) -> np.ndarray:
     """Rms of what a second's lag of each channel changes in each experiment, in the equation that it changes most."""
-    square = [np.mean(np.square(slopes[..., run == i]), axis=2).max(axis=1, initial=0.0) for i in range(num)]
+    count = np.maximum(np.bincount(run, minlength=num), 1)  # 0: nothing of that experiment is judged
+    means = [np.sum(np.square(slopes[..., run == i]), axis=2) / count[i] for i in range(num)]
+    square = [mean.max(axis=1, initial=0.0) for mean in means]
     return np.asarray(np.sqrt(np.array(square)).T)
 
 
@@ -109,16 +112,16 @@ def _with_friction(equation: Equation, logs: Logs, at: Terms, slopes: np.ndarray
 
 
 def _steps(
-    at: Terms, fit: Fit, slopes: np.ndarray, own_belief: np.ndarray, run: np.ndarray, share: np.ndarray
+    at: Terms, fit: Fit, slopes: np.ndarray, own_belief: np.ndarray, run: np.ndarray, share: np.ndarray, *, num: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The Gauss-Newton step of what each experiment has of its own, together with the parameters, which all share; and
-    the sd of each. `slopes`: what the equations change with them (unknowns, equations, samples)."""
+    """The Gauss-Newton step of what each of `num` experiments has of its own, together with the parameters, which all
+    share; and the sd of each. `slopes`: what the equations change with them (unknowns, equations, samples)."""
     root = np.sqrt(fit.weight * (share / fit.level**2)[:, None]) / at.size[:, None]
     shared, own, left = at.slopes(fit.x) * root, slopes * root, fit.residual * root
     belief = np.array([1.0 / u.sd**2 for u in at.unknowns])
     information, gradient = np.diag(belief), belief * fit.x
     parts = []
-    for i in range(int(run.max()) + 1):
+    for i in range(num):
         t, d, r = (a[..., run == i].reshape(*a.shape[:-2], -1) for a in (shared, own, left))
         inverse = np.linalg.inv(d @ d.T + np.diag(own_belief))
         cross = t @ d.T @ inverse
@@ -186,9 +189,9 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
 
 def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int) -> float:
     """By how much friction in presliding lowers the surprise of an experiment: while a motion is too small to slide,
-    friction is a spring, and the motion seems to lead."""
+    friction is a spring, and the motion seems to lead. Nothing where none of its samples is judged."""
     here, saved = logs.run == experiment, 0.0
-    for k, name in enumerate(equation.moved):
+    for k, name in enumerate(equation.moved if here.any() else ()):
         position, speed = logs.moving[name][:2, here]
         for deflection in _deflections(position):
             saved = max(saved, _saved(left[k, here], np.column_stack([_friction(speed), deflection])))
