@@ -10,6 +10,7 @@ import numpy as np
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.rehearsal.curve import clopper_pearson
 from tendonlab.report.figures import Picture
+from tendonlab.report.numbers import number
 from tendonlab.report.plot.style import COLOURS, FIGURE, INK, MUTED, tidy
 
 from .calibrating import Judged, stated_effects, stated_verdicts
@@ -56,6 +57,8 @@ def _bins(stated: Sequence[tuple[float, bool]]) -> list[tuple[float, float, floa
 
 def strengths(ax: Axes, found: Results) -> None:
     """Every single effect by name over its gap/noise: filled where it was established, hollow where it was missed."""
+    from matplotlib.ticker import FuncFormatter
+
     single = found.single()
     kinds = single["effect"].str.split(":").str[1]
     names = sorted(kinds.unique(), reverse=True)
@@ -79,6 +82,7 @@ def strengths(ax: Axes, found: Results) -> None:
                 label=f"{label} ({int(chosen.sum())})",
             )
     ax.set_xscale("log")
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
     tidy(ax, grid="both")
     ax.set_yticks(range(len(names)), [name.replace("_", " ") for name in names])
     ax.set(xlabel="Gap/noise of the missing effect", ylabel="Effect", ylim=(-0.6, len(names) - 0.4))
