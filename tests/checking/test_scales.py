@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tendonlab.checking.regression import Fit
-from tendonlab.checking.scales import _convinces, _helps, shares
+from tendonlab.checking.scales import Factor, _convinces, _helps, _is_credible, shares
 
 
 @pytest.mark.parametrize("times", [1, 5, 20])
@@ -49,3 +49,20 @@ def test_corrected_logs_balance_somewhere_or_suit_the_beliefs(
     level: list[float], strain: float, convinces: bool
 ) -> None:
     assert _convinces(left(level, strain), np.array([True, True])) == convinces
+
+
+@pytest.mark.parametrize(
+    ("value", "level", "strain", "before", "credible"),
+    [
+        (1e-3, 0.08, 7.0, 750.0, True),  # from far away to balance
+        (1e-3, 0.68, 7.0, 750.0, False),  # which it does not reach
+        (1e-3, 0.08, 7.0, 2.0, False),  # or not from so far
+        (1e-3, 0.68, 3.0, 750.0, True),  # beliefs bear it
+        (-1.0, 0.68, 7.0, 750.0, True),  # a mere sign
+    ],
+)
+def test_a_corrected_scale_may_strain_beliefs_where_it_brings_an_equation_to_balance(
+    value: float, level: float, strain: float, before: float, credible: bool
+) -> None:
+    factor = Factor(("output_torque",), value, left([level, 1.0], strain))
+    assert _is_credible(factor, left([before, 1.0], 0.1)) == credible

@@ -17,6 +17,9 @@ from tendonlab.blind.rig import Rig, draw_rig
 from tendonlab.blind.strength import Strength
 from tendonlab.blind.systems import SYSTEMS
 from tendonlab.blind.write import record, write_dataset
+from tendonlab.checking.equation import Equation
+from tendonlab.checking.logs import read_logs
+from tendonlab.checking.scales import RATIO, ROUGH, ROUGH_SHARE, _refined, _searched, _suspects
 
 STILL = Strength(
     amplitude=0.0, gap_noise=0.0, nominal_gap_noise=0.0, floor=np.zeros(1), limited=False, met=True, separation={}
@@ -44,7 +47,7 @@ def test_right_logs_pass(tmp_path: Path, system: str) -> None:
     assert found(tmp_path, system, None) == []
 
 
-@pytest.mark.parametrize("factor", [2.0, 0.5, -1.0, 1000.0])
+@pytest.mark.parametrize("factor", [2.0, 0.5, -1.0, 1000.0, 0.001])
 def test_a_wrong_torque_of_a_bowden_pair_is_found(tmp_path: Path, factor: float) -> None:
     problem = "sign" if factor < 0 else "scale"
     [(kind, place, size)] = found(
@@ -93,3 +96,18 @@ def test_a_wrong_channel_of_a_joint_behind_driven_nuts_is_found(tmp_path: Path, 
     assert kind == problem
     assert signal in place
     assert size == pytest.approx(factor, rel=0.05)
+
+
+def test_a_velocity_that_only_turns_friction_has_no_size(tmp_path: Path) -> None:
+    """At a thousandth of its size the gate would stay shut: that is no sign that the velocity is wrong."""
+    rig, run = logs("bowden_pair")
+    write_dataset(replace(rig), run, tmp_path / "rig", name="rig", description="", fault=None)
+    dataset = tl.load(tmp_path / "rig")
+    equation = Equation(dataset, dataset.system())
+    tried = [(signals, sign) for signals, sign in _suspects(equation) if signals == ("input_velocity",)]
+    assert tried == [(("input_velocity",), -1.0)]
+    read = read_logs(dataset, dataset.system().info)
+    assert read is not None
+    turned = _searched(equation, read.thinned(ROUGH), *tried[0], np.full(1, ROUGH_SHARE))
+    assert turned.value == -1.0
+    assert _refined(equation, read.thinned(ROUGH), turned, np.full(1, ROUGH_SHARE), RATIO, 0.05).value == -1.0

@@ -25,6 +25,7 @@ MENDED = 0.7  # share of the level of a bad equation that a right factor must at
 RELIEVED = 0.5  # share of the strain of the beliefs that it may leave instead
 SPOILT = 1.5  # times the level of an equation that explains too little, beyond which a factor is no right one
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
+SETTLED = 0.01  # share of the level of an equation that may be left where no strain speaks against a factor
 BALANCED = 0.1  # level of an equation that balances: where none does, nothing may be strained
 LATEST, MOST_LAGS = 0.05, 8  # s: lags of outputs that are tried before a factor is told, at most so many
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
@@ -58,7 +59,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     searched = [_searched(equation, rough, signals, sign, share) for signals, sign in _suspects(equation)]
     leading = sorted(searched, key=lambda f: f.fit.cost)[:REFINED]
     found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
-    found = [f for f in found if not _blocks(-f.value) or f.fit.strain < max(plain.strain, CREDIBLE)]
+    found = [f for f in found if _is_credible(f, plain)]
     if not found:
         return []
     best = min(found, key=lambda f: f.fit.cost)
@@ -84,6 +85,14 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     if _fitted(equation, fine, best.signals, beyond, share).cost < best.fit.cost + LEAST_GAIN:
         return []  # a channel that suits at any such size is explained away, not explained
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
+
+
+def _is_credible(factor: Factor, plain: Fit) -> bool:
+    """Whether beliefs may be strained as far as a corrected scale strains them: a mere sign may by any, and so may what
+    brings an equation from far away to balance. There the logs as they are strain nothing, as nothing suits them."""
+    if not _blocks(-factor.value) or factor.fit.strain < max(plain.strain, CREDIBLE):
+        return True
+    return bool(np.any((factor.fit.level < BALANCED) & (factor.fit.level < SETTLED * plain.level)))
 
 
 def _mere_sign(
@@ -139,18 +148,26 @@ def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
     inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio" and not s.limit]
     axes = tuple(equation.axes.values())
     sets = [(name,) for name in (*inputs, *axes, *equation.others)] + ([axes] if len(axes) > 1 else [])
-    turning = {s.name for s in info.inputs if s.dimension in VELOCITIES and not info.dof}
     for signals in sets:
-        if not turning.intersection(signals):
+        if not _only_turns(equation, signals):
             yield signals, 1.0
         yield signals, -1.0
     yield (TIME,), 1.0
 
 
+def _only_turns(equation: Equation, signals: tuple[str, ...]) -> bool:
+    """Whether channels are velocities that move nothing and only turn friction: at any other size they would shut or
+    open a gate instead."""
+    info = equation.system.info
+    turning = {s.name for s in info.inputs if s.dimension in VELOCITIES and not info.dof}
+    return not turning.isdisjoint(signals)
+
+
 def _searched(equation: Equation, logs: Logs, signals: tuple[str, ...], sign: float, share: np.ndarray) -> Factor:
     """The best of factors far apart."""
     num = int(np.log(LARGEST) / np.log(RATIO))
-    values = sign * np.concatenate([RATIO ** np.arange(-num, num + 1.0), [2.0, 0.5]])  # the latter: a usual mistake
+    sizes = np.concatenate([RATIO ** np.arange(-num, num + 1.0), [2.0, 0.5]])  # the latter: a usual mistake
+    values = sign * (np.ones(1) if _only_turns(equation, signals) else sizes)
     tried = [Factor(signals, float(v), _fitted(equation, logs, signals, v, share, STEPS)) for v in values]
     return min(tried, key=lambda f: f.fit.cost)
 
@@ -161,6 +178,9 @@ def _refined(
     """The best factor within `reach` of one. Where something stiff is stretched by a small difference of long travels,
     its valley is too narrow for a search: there Gauss-Newton finds it, or it is that one."""
     from scipy.optimize import minimize_scalar
+
+    if _only_turns(equation, factor.signals):
+        return replace(factor, fit=_fitted(equation, logs, factor.signals, factor.value, share))
 
     def cost(logarithm: float) -> float:
         return _fitted(equation, logs, factor.signals, factor.value * np.exp(logarithm), share).cost
