@@ -15,7 +15,7 @@ from tendonlab.rehearsal.tally import Share, share
 from .calibrating import Folders, Judged, judged
 from .scoring import SURE, score
 
-STRONG, WEAK = 3.0, 1.0  # gap/noise from which an effect is strong, and below which no more is asked than is there
+STRONG, WEAK = 3.0, 1.0  # gap/noise from which an effect is strong, and below which noise may hide an effect
 
 
 class Row(NamedTuple):
@@ -53,7 +53,7 @@ ROWS = (
     Row("pair: at least one established", "pair_one", _everywhere),
     Row("mistake in the logs: right kind", "fault_kind", _everywhere),
     Row("mistake in the logs: right signal or run", "fault_signal", _everywhere),
-    Row("right logs refused", "blocked", _everywhere),
+    Row("right logs refused, or no report", "blocked", _everywhere),
     Row("verdict right", "verdict_hit", _everywhere),
 )
 

@@ -37,14 +37,14 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     parts = found.parts
     columns = [f"{name} ({len(cases)} rigs)" for name, cases in parts.items()]
     yield "# Blind results"
-    yield f"{len(found.cases)} rigs, diagnosed by tendonlab {version()}. Made by"
+    yield f"{len(found.cases)} rigs. Written by tendonlab {version()} with"
     yield f"    {command}"
     intervals = "Shares with their number of cases and 95 % intervals (Clopper–Pearson)."
     yield f"{intervals} [The protocol](blind.md) says what is drawn and what counts."
     yield "## Shares"
     yield _table(["quantity", *columns], [[q, *map(_share, both)] for q, both in found.shares().items()])
     means = found.means()
-    rows = [[q, *(f"{mean:.2f} (of {num})" if num else "–" for mean, num in both)] for q, both in means.items()]
+    rows = [[q, *(f"{mean:.2f} (of {num} rigs)" if num else "–" for mean, num in both)] for q, both in means.items()]
     if rows:
         yield _table(["mean", *columns], rows)
     yield "## Verdicts"
@@ -63,6 +63,7 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     )
     yield _table(["kind of rig", "cases", "verdicts", "effects"], list(_calibration(found.judged)))
     yield "## Wrong answers"
+    yield "A right effect in another form than the library's, found under `unknown_effect`, counts as right here."
     columns = ["case", "system", "repeats", "missing", "gap/noise", "verdict told", "selected"]
     yield _table(columns, [_miss(str(name), case) for name, case in found.misses().iterrows()])
 
