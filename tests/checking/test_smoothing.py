@@ -73,20 +73,3 @@ def test_an_even_grid_reads_a_ramp_exactly_and_a_held_sample_at_the_middle_of_it
     steps = 0.1 * np.arange(7)
     held = smoothing.even(steps, steps, 0.1, held=True)  # a staircase below the ramp, by half a step on average
     np.testing.assert_allclose(held[1:], steps[1:] - 0.05, atol=1e-12)
-
-
-def test_noise_is_at_least_that_of_rounding() -> None:
-    ramp = np.linspace(0.0, 1.0, 5001)
-    assert smoothing.noise_of(np.floor(ramp / 0.02) * 0.02) >= 0.02 / np.sqrt(12.0) * 0.999
-    assert smoothing.noise_of(ramp) < 1e-6
-    noise = 0.05 * np.random.default_rng(0).standard_normal(5001)
-    noise[::100] = np.nan
-    assert smoothing.noise_of(ramp + noise) == pytest.approx(0.05, rel=0.1)
-
-
-def test_the_smallest_change_is_the_step_of_a_rounded_reading() -> None:
-    reading = np.floor(np.linspace(0.0, 1.0, 2001) / 0.02) * 0.02
-    assert smoothing.smallest_change(reading) == pytest.approx(0.02)
-    assert smoothing.repeats(reading)
-    assert not smoothing.repeats(np.linspace(0.0, 1.0, 2001))
-    assert smoothing.smallest_change(np.full(10, 3.0)) == 0.0

@@ -8,8 +8,8 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.fitting.thinning import local_parabolas, thinned
+from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.records import Experiment
-from tendonlab.simulation.signals import white_noise_sd
 
 RNG = np.random.default_rng(5)
 TIME = np.arange(4001) / 1000.0

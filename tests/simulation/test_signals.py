@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tendonlab.simulation.signals import motion_at_start, scales_of, white_noise_sd
+from tendonlab.simulation.signals import motion_at_start, scales_of
 from tendonlab.simulation.start import Start
 
 TIME = 3.0 + np.arange(0.0, 4.0, 0.002)
@@ -55,13 +55,6 @@ def test_scales_are_a_tenth_of_the_smallest_travel_and_speed() -> None:
     assert position == pytest.approx(0.1 * 0.2 / np.sqrt(2), rel=0.01)
     assert velocity == pytest.approx(0.1 * 0.2 * 2 * np.pi / np.sqrt(2), rel=0.02)
     assert scales_of(TIME, np.array([still, missing])) == (1e-2, 1e-2)
-
-
-def test_white_noise_is_seen_beneath_smooth_motion() -> None:
-    noise = 0.01 * np.random.default_rng(2).standard_normal(20_000)
-    line = np.linspace(0.0, 50.0, 20_000)
-    assert white_noise_sd(np.sin(line) + noise) == pytest.approx(0.01, rel=0.05)
-    assert white_noise_sd(noise[:9]) == 0.0
 
 
 def start(**more: object) -> Start:

@@ -13,6 +13,7 @@ from tendonlab.checking import smoothing
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.catalog import SystemInfo
+from tendonlab.simulation.reading import noise_sd
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -129,7 +130,7 @@ def read_logs(dataset: Dataset, info: SystemInfo, marked: Marks | None = None) -
     marked = marks(dataset) if marked is None else marked
     records = [_Record.of(info, e, step, marked) for e in dataset.experiments]
     positions = [r.values[name] for r in records for name in axes]
-    noise = [smoothing.noise_of(_despiked(e, name, marked)) for e in dataset.experiments for name in axes]
+    noise = [noise_sd(_despiked(e, name, marked)) for e in dataset.experiments for name in axes]
     if axes and not any(np.ptp(y) > 10 * s for y, s in zip(positions, noise, strict=True)):
         return None
     total = sum(len(r.whole) for r in records)

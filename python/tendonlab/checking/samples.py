@@ -7,11 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from tendonlab.checking.finding import Finding
-from tendonlab.checking.smoothing import repeats, smallest_change
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.report.numbers import number, unit_text
-from tendonlab.simulation.signals import white_noise_sd
+from tendonlab.simulation.reading import rounding_step, white_noise_sd
 
 GAP = 1.5  # median steps between two stamps that make a gap
 JITTER, DRIFT = 0.02, 0.01  # relative: scatter of steps, and change of their median from the first to the last quarter
@@ -115,9 +114,10 @@ def _steps(dataset: Dataset) -> Iterator[Finding]:
             continue
         records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset.experiments]
         records = [r for r in records if len(r) > 10 and np.ptp(r) > 0]
-        if not records or not all(map(repeats, records)):
+        steps = [rounding_step(r) for r in records]
+        if not records or not all(steps):
             continue
-        step = float(np.median([smallest_change(r) for r in records]))
+        step = float(np.median(steps))
         travel = max(float(np.ptp(r)) for r in records)
         if step > max(COARSE * float(np.median([white_noise_sd(r) for r in records])), travel / FINE):
             size = f"{number(step)} {unit_text(spec.si_unit)}".rstrip()

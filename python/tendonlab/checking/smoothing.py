@@ -8,8 +8,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tendonlab.simulation.signals import white_noise_sd
-
 MOST_SAMPLES = 8000  # of the grid over all experiments
 LEAST_WIDTH = 1.5  # samples: sd of the narrowest Gaussian
 NOISE_SHARE = 0.03  # of the rms acceleration that noise may reach
@@ -24,25 +22,6 @@ def even(time: np.ndarray, values: np.ndarray, step: float, *, held: bool) -> np
     kept = np.isfinite(values)
     at = np.append(0.5 * (time[1:] + time[:-1]), time[-1] + 0.5 * (time[-1] - time[-2])) if held else time
     return np.asarray(np.interp(grid, at[kept], values[kept]))
-
-
-def noise_of(values: np.ndarray) -> float:
-    """Sd of the noise of a record: the white part, at least that of rounding."""
-    kept = values[np.isfinite(values)]
-    rounding = smallest_change(kept) / np.sqrt(12.0) if repeats(kept) else 0.0
-    return max(white_noise_sd(kept), rounding)
-
-
-def smallest_change(values: np.ndarray) -> float:
-    """The smallest change between two samples that differ: the step of what was rounded; 0 where nothing changes."""
-    changes = np.abs(np.diff(values))
-    changes = changes[changes > 1e-9 * max(float(np.ptp(values)), 1e-300)]
-    return float(np.quantile(changes, 0.01)) if len(changes) else 0.0
-
-
-def repeats(values: np.ndarray) -> bool:
-    """Whether many samples equal the one before, as readings of a coarse sensor do."""
-    return float(np.mean(np.diff(values) == 0)) > 0.05
 
 
 def width(positions: Sequence[np.ndarray], noise: Sequence[float], total: int) -> float:

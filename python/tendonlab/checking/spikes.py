@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tendonlab.checking.smoothing import smallest_change
 from tendonlab.data import Dataset, Experiment
+from tendonlab.simulation.reading import smallest_change
 
 WINDOW = 7  # samples of the running median: up to three outliers in a row are seen
 AROUND = 51  # samples over which the noise of a record is looked at

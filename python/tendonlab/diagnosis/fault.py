@@ -12,7 +12,7 @@ from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.words import STAGES, VERDICTS
 from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.prepare import Replay, prepare
-from tendonlab.simulation.signals import white_noise_sd
+from tendonlab.simulation.reading import noise_sd
 from tendonlab.simulation.system import System
 
 ATTEMPTS = 5  # of the stepper per sample: what needs more is given up
@@ -57,7 +57,7 @@ def _nominal_gap(dataset: Dataset, system: System, kind: str) -> dict[str, dict[
     for name in dataset.outputs:
         known = [one[name] for one in errors if one is not None and name in one]
         level = (sum(known) / len(known)) ** 0.5 if known and len(known) == len(errors) else None
-        noise = max(white_noise_sd(e.data[name].to_numpy(dtype=float)) for e in dataset.experiments)
+        noise = max(noise_sd(e.data[name].to_numpy(dtype=float)) for e in dataset.experiments)
         gap[name] = {"noise_floor": noise, **dict.fromkeys(STAGES), "nominal": level}
     return gap
 

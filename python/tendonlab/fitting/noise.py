@@ -11,8 +11,8 @@ from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.errors import DatasetError
 from tendonlab.simulation.prepare import Prepared
+from tendonlab.simulation.reading import noise_sd
 from tendonlab.simulation.records import SignalSpec
-from tendonlab.simulation.signals import white_noise_sd
 from tendonlab.simulation.system import System
 
 NEAR_FLOOR = 1.3  # whitened mean square below which a model is nearly at the floor
@@ -116,7 +116,7 @@ def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
     """Sd of the white noise of one output, from its records; see `sensor_noise`."""
     rounding = rounding_of(signal)
     smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
-    stated = signal.noise_sd or float(np.median([white_noise_sd(r) for r in records]))
+    stated = signal.noise_sd or float(np.median([noise_sd(r) for r in records]))
     return max(stated, rounding, smallest) or 1.0
 
 

@@ -9,12 +9,11 @@ from numpy.typing import ArrayLike
 
 from tendonlab.arguments import along, choice, interval, times, within
 from tendonlab.errors import ParameterError
-from tendonlab.simulation.signals import white_noise_sd
+from tendonlab.simulation.reading import noise_sd
 
 METHODS = ("central", "spline", "savgol")
 CUBIC = 3  # degree of the polynomials of the Savitzky-Golay filter
 DEFAULT_SAMPLES = 21  # its window where none is given
-REPEATS = 0.1  # share of samples equal to the one before from which on a record counts as quantised
 
 
 def velocity(time: ArrayLike, values: ArrayLike, *, method: str = "central", window: float | None = None) -> np.ndarray:
@@ -63,19 +62,10 @@ def window_samples(time: np.ndarray, window: float | None) -> int:
 def _spline(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     from scipy.interpolate import UnivariateSpline
 
-    noise = max(white_noise_sd(values), quantisation_sd(values))
+    noise = noise_sd(values)
     level = 1e-14 * float(np.max(np.abs(values)))  # rounding: FITPACK would never end on an exact fit of it
     middle, half = 0.5 * (time[0] + time[-1]), 0.5 * (time[-1] - time[0])
     scale = max(float(np.ptp(values)), level) or 1.0
     allowed = len(values) * (max(noise, level) / scale) ** 2
     spline = UnivariateSpline((time - middle) / half, (values - values[0]) / scale, k=5, s=allowed)
     return np.asarray(spline.derivative()((time - middle) / half) * (scale / half), dtype=float)
-
-
-def quantisation_sd(values: np.ndarray) -> float:
-    """Sd of the rounding to steps of a record that repeats its values; 0 where it does not."""
-    changes = np.abs(np.diff(values))
-    moved = changes > 1e-9 * float(np.ptp(values))
-    if moved.all() or not moved.any() or 1.0 - moved.mean() < REPEATS:
-        return 0.0
-    return float(changes[moved].min()) / math.sqrt(12.0)

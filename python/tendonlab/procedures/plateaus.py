@@ -11,7 +11,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 from tendonlab.arguments import along, interval, times, within
 from tendonlab.errors import ParameterError
 from tendonlab.procedures.runs import blocks, of_samples, stretches, trimmed
-from tendonlab.simulation.signals import white_noise_sd
+from tendonlab.simulation.reading import white_noise_sd
 
 NOISE = 5.0  # sd of noise that still count as none
 REST = 0.01  # share of the greatest speed that counts as rest

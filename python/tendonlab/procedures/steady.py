@@ -9,7 +9,7 @@ from scipy.signal import savgol_coeffs, savgol_filter
 from tendonlab.arguments import along, interval, positive, times, within
 from tendonlab.errors import ParameterError
 from tendonlab.procedures.runs import blocks, of_samples, stretches, trimmed
-from tendonlab.simulation.signals import white_noise_sd
+from tendonlab.simulation.reading import white_noise_sd
 
 FEWEST = 20  # samples of a record
 MOST = 2000  # samples that are looked at: a longer record is averaged in blocks

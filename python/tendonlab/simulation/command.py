@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.arguments import JITTER
+from tendonlab.simulation.reading import is_noiseless
 from tendonlab.simulation.records import Controller, Experiment
-from tendonlab.simulation.signals import is_noiseless
 
 FEWEST = 10  # samples of which noise can be told
 HEARD = 0.5  # share of the noise of the reading that the logged command must hold

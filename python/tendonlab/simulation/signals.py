@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
+from tendonlab.simulation.reading import is_noiseless
 
 AT_ONCE = 0.02  # s from the first sample, within which a signal shows how an experiment begins
 CLEAR = 4.0  # sd from 0 of a velocity or a curvature that is there
-ROUNDING = 1e-9  # of its range: a signal with less noise was computed, not measured
 
 
 def hold(time: np.ndarray, values: np.ndarray) -> _core.Signal:
@@ -108,20 +108,6 @@ def scales_of(time: np.ndarray, positions: np.ndarray) -> tuple[float, float]:
     if not travel:
         return 1e-2, 1e-2
     return 0.1 * min(travel), max(0.1 * min(speed), 1e-12)
-
-
-def is_noiseless(values: np.ndarray) -> bool:
-    """Whether a signal was computed, not measured."""
-    return white_noise_sd(values) <= ROUNDING * float(np.ptp(values[np.isfinite(values)]))
-
-
-def white_noise_sd(values: np.ndarray) -> float:
-    """Sd of the white part of a sampled signal, from its fourth differences (smooth motion cancels)."""
-    y = values[np.isfinite(values)]
-    if len(y) < 10:
-        return 0.0
-    weights = np.sqrt(70.0)  # root of the sum of squared binomials of the fourth difference
-    return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
 
 
 def spline_near(time: np.ndarray, values: np.ndarray) -> Any:

@@ -1,0 +1,52 @@
+"""What a record of a sensor shows of its noise: the white part, and the steps that its readings were rounded to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+ROUNDING = 1e-9  # of its range: a record with less noise was computed, not measured
+REPEATED = 0.05  # share of samples equal to the one before, from which on readings may have been rounded
+SMALL, USUAL = 5.5, 0.15  # steps, up to which changes show whether all are whole; share of changes that are so small
+WHOLE, MOSTLY = 0.1, 0.9  # of a step, from whole ones; share of the small changes that must be so near
+
+
+def noise_sd(values: np.ndarray) -> float:
+    """Sd of the noise of a record: of the white part, at least of rounding."""
+    return max(white_noise_sd(values), rounding_step(values) / float(np.sqrt(12.0)))
+
+
+def is_noiseless(values: np.ndarray) -> bool:
+    """Whether a signal was computed, not measured."""
+    kept = values[np.isfinite(values)]
+    return white_noise_sd(kept) <= ROUNDING * float(np.ptp(kept)) and rounding_step(kept) == 0
+
+
+def white_noise_sd(values: np.ndarray) -> float:
+    """Sd of the white part of a sampled signal, from its fourth differences (smooth motion cancels)."""
+    y = values[np.isfinite(values)]
+    if len(y) < 10:
+        return 0.0
+    weights = np.sqrt(70.0)  # root of the sum of squared binomials of the fourth difference
+    return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
+
+
+def rounding_step(values: np.ndarray) -> float:
+    """The step of readings that were rounded: many equal the one before, and all changes are whole steps. 0 where
+    nothing of the kind shows, as in readings that move on by more than a step at every sample: their differences hold
+    the rounding as white noise."""
+    kept = values[np.isfinite(values)]
+    changes = np.abs(np.diff(kept))
+    step = smallest_change(kept)
+    moved = changes[changes > 0.5 * step]
+    if step == 0 or len(moved) > (1.0 - REPEATED) * len(changes):
+        return 0.0
+    small = moved[moved < SMALL * step] / step
+    is_usual, is_whole = len(small) > USUAL * len(moved), np.abs(small - np.round(small)) < WHOLE
+    return step if is_usual and np.mean(is_whole) > MOSTLY else 0.0
+
+
+def smallest_change(values: np.ndarray) -> float:
+    """The smallest change between two samples that differ; 0 where nothing changes."""
+    changes = np.abs(np.diff(values))
+    changes = changes[changes > 1e-9 * max(float(np.ptp(values)), 1e-300)]
+    return float(np.quantile(changes, 0.01)) if len(changes) else 0.0
