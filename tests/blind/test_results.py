@@ -23,7 +23,9 @@ def truth(verdict: str, *effects: str, gap: float, repeats: bool = False, cause:
     return {"verdict": verdict, "effects": list(effects), "accept": [], "draw": {**draw, **named}}
 
 
-def report(verdict: str, *selected: str, probability: float = 0.9, tied: tuple[str, ...] = ()) -> Any:
+def report(
+    verdict: str, *selected: str, probability: float = 0.9, tied: tuple[str, ...] = (), left: float = 1.0
+) -> Any:
     ranked = [*selected, *(name for name in EFFECTS if name not in selected)]
     chances = {name: probability if name in selected else 0.02 for name in ranked}
     entries = [
@@ -34,6 +36,7 @@ def report(verdict: str, *selected: str, probability: float = 0.9, tied: tuple[s
     shrunk = {"from_refitted": {"value": 0.97 if selected else None}}
     return {
         "verdict": verdict, "selected": list(selected), "effects": entries, "indistinguishable": [list(tied)],
+        "gap": {"joint_angle": {"noise_floor": 1.0, "refitted": 9.0, "with_effect": left}},
         "shrinkage": shrunk, "details": {"evidence": evidence}, "split": {"train": ["a", "b"]}, "seconds": 1.0,
     }  # fmt: skip
 
@@ -41,7 +44,10 @@ def report(verdict: str, *selected: str, probability: float = 0.9, tied: tuple[s
 SERIES: dict[str, tuple[Any, Any]] = {
     "strong": (truth("effect", "joint:stribeck", gap=8.0), report("effect", "joint:stribeck")),
     "beside": (truth("effect", "joint:stribeck", gap=4.0), report("effect", "joint:stribeck", "load:offset")),
-    "partly": (truth("effect", "joint:stribeck", gap=5.0, own=False), report("unknown_effect", "joint:stribeck")),
+    "partly": (
+        truth("effect", "joint:stribeck", gap=5.0, own=False),
+        report("unknown_effect", "joint:stribeck", left=3.0),
+    ),
     "weak": (truth("effect", "load:offset", gap=1.5), report("effect", "joint:stribeck", tied=EFFECTS)),
     "nothing": (truth("no_gap", gap=0.0), report("no_gap")),
     "alarm": (truth("parameters_only", gap=0.0), report("effect", "load:offset")),
@@ -111,6 +117,21 @@ def test_the_page_holds_tables_figures_and_misses(folders: tuple[Path, Path], tm
     for name in ("blind-reliability", "blind-strength"):
         assert (out / "figures" / f"{name}.svg").is_file()
         assert f"figures/{name}.svg" in text
+
+
+def test_the_gap_shrank_as_far_as_where_the_effects_were_told(folders: tuple[Path, Path], tmp_path: Path) -> None:
+    """All cases but one shrink the gap as far as it goes; of the one that is not told nothing is known."""
+    sealed, reports = folders
+    told = tmp_path / "told"
+    for name in ("strong", "beside", "partly"):
+        best = {"gap": {"joint_angle": {"noise_floor": 1.0, "refitted": 9.0, "with_effect": 1.0}}}
+        (told / name).mkdir(parents=True)
+        (told / name / REPORT).write_text(json.dumps(best), encoding="utf-8")
+    shares = results([folders], [(sealed, told)]).shares()
+    counted = next(both for quantity, both in shares.items() if quantity.startswith("held-out gap shrunk"))
+    assert [(one.hits, one.num) for one in counted] == [(2, 3), (0, 0)]
+    with pytest.raises(ValueError, match="expected the truths of one of the series"):
+        results([folders], [(reports, told)])
 
 
 def test_the_command_takes_several_series(

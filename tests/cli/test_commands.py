@@ -184,6 +184,7 @@ def test_blind_is_among_the_commands(capsys: Printed, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
+        (["diagnose", "{tiny}", "--library", "joint:glue"], "joint:glue"),
         (["diagnose", "nowhere"], "DatasetError: nowhere/dataset.toml: no such file"),
         (["identify", "{tiny}", "--effects", "joint:stribek"], "'joint:stribek' is no effect of rigid_joint; did"),
         (["simulate", "{tiny}", "--experiment", "run-9"], "no experiment 'run-9'"),

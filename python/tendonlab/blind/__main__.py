@@ -1,4 +1,4 @@
-"""python -m tendonlab.blind draw|run|score."""
+"""`python -m tendonlab.blind draw|run|…`."""
 
 from .commands import main
 

@@ -1,4 +1,4 @@
-"""`tendonlab blind draw|run|follow|score|results|calibrate`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|follow|score|tell|results|calibrate`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|results|calibrate")
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|tell|results|calibrate")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -47,17 +47,31 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     running = _verb(verbs, "run", _run, text)
     running.add_argument("cases", type=Path, metavar="CASES")
     running.add_argument("--out", type=Path, required=True, help="folder of the reports and verdicts.json")
-    text = "time limit of one diagnosis; a case that exceeds the limit counts as failed (default 1800)"
-    running.add_argument("--timeout", type=float, default=1800.0, metavar="SECONDS", help=text)
-    running.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
+    _add_pace(running)
 
     scoring = _verb(verbs, "score", _score, "open the truth and compare")
     scoring.add_argument("sealed", type=Path, metavar="SEALED")
     scoring.add_argument("reports", type=Path, metavar="REPORTS")
     scoring.add_argument("--csv", type=Path, help="write one row per case here")
     scoring.add_argument("--json", type=Path, help="write summary and cases here")
+    _add_tell(verbs)
     _add_results(verbs)
     _add_calibrate(verbs)
+
+
+def _add_pace(parser: argparse.ArgumentParser) -> None:
+    text = "time limit of one diagnosis; a case that exceeds the limit counts as failed (default 1800)"
+    parser.add_argument("--timeout", type=float, default=1800.0, metavar="SECONDS", help=text)
+    parser.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
+
+
+def _add_tell(verbs: Any) -> None:
+    text = "open the truth and diagnose the cases again, told which effects are missing: the most that can be reached"
+    parser = _verb(verbs, "tell", _tell, text)
+    parser.add_argument("sealed", type=Path, metavar="SEALED")
+    parser.add_argument("cases", type=Path, metavar="CASES")
+    parser.add_argument("--out", type=Path, required=True, help="folder of these reports, apart from those of `run`")
+    _add_pace(parser)
 
 
 def _add_drawn(drawing: argparse.ArgumentParser) -> None:
@@ -88,6 +102,8 @@ def _add_results(verbs: Any) -> None:
     text = "write the page of results of one series or several: shares, figures and every wrong answer"
     parser = _verb(verbs, "results", _results, text)
     parser.add_argument("--on", required=True, help="diagnosed cases; may be given several times", **SERIES)
+    text = "truths of one of these series, and what `tell` wrote; may be given several times"
+    parser.add_argument("--told", default=[], help=text, **{**SERIES, "metavar": ("SEALED", "TOLD")})
     parser.add_argument("--out", type=Path, required=True, help="folder of blind-results.md and its figures")
 
 
@@ -95,8 +111,9 @@ def _results(given: argparse.Namespace) -> int:
     from .results import results
     from .results_page import write
 
-    series = " ".join(f"--on {sealed} {reports}" for sealed, reports in given.on)
-    print(write(results(given.on), given.out, f"tendonlab blind results {series} --out {given.out}"))
+    pairs = [f"--{name} {sealed} {of}" for name in ("on", "told") for sealed, of in getattr(given, name)]
+    command = f"tendonlab blind results {' '.join(pairs)} --out {given.out}"
+    print(write(results(given.on, given.told), given.out, command))
     return 0
 
 
@@ -152,6 +169,13 @@ def _run(given: argparse.Namespace) -> int:
     return 0
 
 
+def _tell(given: argparse.Namespace) -> int:
+    from .oracle import tell
+
+    print(tell(given.sealed, given.cases, given.out, jobs=given.jobs, timeout=given.timeout))
+    return 0
+
+
 def _score(given: argparse.Namespace) -> int:
     from .scoring import score
 
@@ -165,7 +189,7 @@ def _score(given: argparse.Namespace) -> int:
 
 
 def main() -> int:
-    """The same without the rest of tendonlab: python -m tendonlab.blind draw|run|follow|score|results|calibrate."""
+    """The same without the rest of tendonlab: `python -m tendonlab.blind`."""
     text = "check the diagnosis on synthetic rigs whose truth is sealed"
     parser = argparse.ArgumentParser(prog="python -m tendonlab.blind", description=text)
     _add_verbs(parser)

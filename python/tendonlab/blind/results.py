@@ -13,8 +13,10 @@ import pandas as pd
 from tendonlab.rehearsal.tally import Share, share
 
 from .calibrating import Folders, Judged, judged
+from .oracle import shares_of_oracle
 from .scoring import SURE, score
 
+ENOUGH = 0.95  # of what a diagnosis reaches that is told the effects
 STRONG, WEAK = 3.0, 1.0  # gap/noise from which an effect is strong, and below which noise may hide an effect
 
 
@@ -53,6 +55,7 @@ ROWS = (
     Row("pair: at least one established", "pair_one", _everywhere),
     Row("mistake in the logs: right kind", "fault_kind", _everywhere),
     Row("mistake in the logs: right signal or run", "fault_signal", _everywhere),
+    Row("held-out gap shrunk as far as with the effects told, gap/noise ≥ 1", "shrunk", _between(WEAK)),
     Row("right logs refused, or no report", "blocked", _everywhere),
     Row("verdict right", "verdict_hit", _everywhere),
 )
@@ -60,8 +63,9 @@ ROWS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Results:
-    """`cases`: one row per case of all series, as `Score.cases`, and whether an effect was `named` or something unknown
-    `claimed` where nothing is missing. `judged`: the cases whose probabilities count."""
+    """`cases`: one row per case of all series, as `Score.cases`; also whether an effect was `named`, or something
+    unknown `claimed`, where nothing is missing, and whether the gap `shrunk` as much as with the effects told.
+    `judged`: the cases whose probabilities count."""
 
     cases: pd.DataFrame
     judged: tuple[Judged, ...]
@@ -119,17 +123,23 @@ def _count(cases: pd.DataFrame, row: Row) -> Share:
     return share(int(values.sum()), len(values))
 
 
-def results(folders: Folders) -> Results:
-    """The results of several series, each a folder of truths and one of reports. Raises ValueError as `score` and
-    `judged` do, and where no series is given."""
+def results(folders: Folders, told: Folders = ()) -> Results:
+    """The results of several series, each a folder of truths and one of reports; `told`: of some of them the truths
+    and what `tell` wrote. Raises ValueError as `score` and `judged` do, where no series is given, and where one was
+    told that is not given."""
     if not folders:
         raise ValueError("no series: expected at least one folder of truths with its folder of reports")
-    series = [_scored(sealed, reports) for sealed, reports in folders]
+    oracles = {sealed.resolve(): reports for sealed, reports in told}
+    if unknown := oracles.keys() - {sealed.resolve() for sealed, _ in folders}:
+        raise ValueError(f"{min(unknown)}: expected the truths of one of the series, too")
+    series = [_scored(sealed, reports, oracles.get(sealed.resolve())) for sealed, reports in folders]
     return Results(cases=pd.concat(series), judged=tuple(judged(folders)))
 
 
-def _scored(sealed: Path, reports: Path) -> pd.DataFrame:
+def _scored(sealed: Path, reports: Path, told: Path | None) -> pd.DataFrame:
     cases = score(sealed, reports).cases
+    share = pd.Series(dtype=float) if told is None else shares_of_oracle(reports, told)
+    cases["shrunk"] = _only(share.reindex(cases.index) >= ENOUGH, cases.index.isin(share.index))
     cases.index = [f"{sealed.name}/{name}" for name in cases.index]
     nothing = cases["false_alarm"].notna()
     cases["named"] = _only((cases["selected"] != "") | cases["failed"].astype(bool), nothing)
@@ -137,6 +147,6 @@ def _scored(sealed: Path, reports: Path) -> pd.DataFrame:
     return cases
 
 
-def _only(values: pd.Series, where: pd.Series) -> pd.Series:
+def _only(values: pd.Series, where: pd.Series | np.ndarray) -> pd.Series:
     """`values` as numbers, NaN elsewhere."""
     return values.astype(float).where(where)

@@ -8,6 +8,7 @@ import hashlib
 import json
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
@@ -32,21 +33,36 @@ def run(cases: Path | str, out: Path | str, *, jobs: int = 1, timeout: float = 1
     no dataset, or where a truth lies below `cases`, next to `cases` or below `out`, see `refuse_truth`.
     """
     cases, out = Path(cases).resolve(), Path(out).resolve()
+    folders = cases_in(cases)
+    refuse_truth(cases.parent, out)
+    commands = {folder.name: command(folder, out / folder.name) for folder in folders}
+    failed = run_all(commands, out, jobs=jobs, timeout=timeout, progress=progress)
+    return _seal(out, list(commands), failed)
+
+
+def cases_in(cases: Path) -> list[Path]:
+    """The folders of the cases; raises ValueError without any."""
     folders = sorted(path.parent for path in cases.glob("*/dataset.toml"))
     if not folders:
         raise ValueError(f"{cases}: expected folders with a dataset.toml, found none")
-    refuse_truth(cases.parent, out)
+    return folders
+
+
+def run_all(
+    commands: Mapping[str, Sequence[str]], out: Path, *, jobs: int, timeout: float, progress: bool
+) -> dict[str, str]:
+    """Run the command of each case that has no report yet in `out`; of those that failed, why."""
     out.mkdir(parents=True, exist_ok=True)
     failed: dict[str, str] = {}
-    todo = [folder for folder in folders if not (out / folder.name / REPORT).exists()]
+    todo = [name for name in commands if not (out / name / REPORT).exists()]
     with ThreadPoolExecutor(max(1, jobs)) as pool:
-        pending = {pool.submit(_diagnose, folder, out / folder.name, timeout): folder.name for folder in todo}
+        pending = {pool.submit(_diagnose, commands[name], out / name, timeout): name for name in todo}
         done = tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case", disable=not progress)
         for future in done:
             message = future.result()
             if message:
                 failed[pending[future]] = message
-    return _seal(out, [folder.name for folder in folders], failed)
+    return failed
 
 
 def sha256(path: Path) -> str:
@@ -54,11 +70,11 @@ def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _diagnose(case: Path, out: Path, timeout: float) -> str:
+def _diagnose(command: Sequence[str], out: Path, timeout: float) -> str:
     """Empty if it went well, else the last line that the process wrote, or that the time was up."""
     out.mkdir(parents=True, exist_ok=True)
     try:
-        done = subprocess.run(command(case, out), capture_output=True, text=True, check=False, timeout=timeout)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=timeout)
     except subprocess.TimeoutExpired:
         (out / REPORT).unlink(missing_ok=True)
         return f"no verdict within {timeout:g} s"

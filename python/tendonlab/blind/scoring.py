@@ -75,14 +75,15 @@ def score(sealed: Path | str, reports: Path | str) -> Score:
     rows = []
     drawn = {path.stem for path in sealed.glob("*.toml")}
     for name in sorted({*told, *drawn}):
-        truth, verdict = _truth(sealed, name), told.get(name, {"verdict": "failed"})
+        truth, verdict = truth_of(sealed, name), told.get(name, {"verdict": "failed"})
         rows.append({"case": name, **_facts(truth), **_compare(truth, _report(reports, name, verdict))})
     if not rows:
         raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
     return _tables(pd.DataFrame(rows).set_index("case"))
 
 
-def _truth(sealed: Path, name: str) -> dict[str, Any]:
+def truth_of(sealed: Path, name: str) -> dict[str, Any]:
+    """The truth of a case. Raises ValueError where that is missing or of another format."""
     path = sealed / f"{name}.toml"
     if not path.exists():
         raise ValueError(f"{path} is missing: expected the truth of {name}")

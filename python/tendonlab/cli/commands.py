@@ -105,6 +105,8 @@ def _add_diagnose(commands: Any) -> None:
     parser.add_argument("dataset", metavar="DATASET", help="folder with dataset.toml")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write report.html, report.json and figures here")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="default: 0; same seed, same answer")
+    text = "weigh these alone, such as joint:stribeck (default: all that the system takes)"
+    parser.add_argument("--library", nargs="+", default="default", metavar="EFFECT", help=text)
     parser.add_argument("--force", action="store_true", help="go on although the check of the logs forbids it")
     parser.add_argument("--no-figures", action="store_true", help="write no PNG and SVG beside the report")
     _add_progress(parser)
@@ -206,7 +208,8 @@ def _diagnose(given: Arguments) -> int:
     rig = load(_folder(given.dataset))
     if given.out is not None:
         prepare_folder(given.out)
-    diagnosis = diagnose(rig, seed=given.seed, progress=not given.quiet, force=given.force)
+    settings = {"library": given.library, "seed": given.seed, "force": given.force}
+    diagnosis = diagnose(rig, progress=not given.quiet, **settings)
     if given.out is not None:
         diagnosis.report(given.out, figures=not given.no_figures)
     _print_diagnosis(diagnosis, given.out)
