@@ -62,6 +62,16 @@ def test_a_late_sensor_is_no_wrong_scale(late: float, tmp_path: Path) -> None:
     assert [f for f in tl.check(logs(tmp_path, late=late)).findings if f.blocks] == []
 
 
+@pytest.mark.parametrize("late", [0.03, 0.08])
+def test_one_sensor_that_is_late_in_one_run_is_found_beside_the_others(late: float, tmp_path: Path) -> None:
+    """A stiff cable makes the torque sensor follow the late angle for a while; in the end the angle alone is late."""
+    data = logs(tmp_path)
+    data.experiments[1].data["joint_angle"] = np.interp(TIME - late, TIME, data.experiments[1].data["joint_angle"])
+    [found] = [f for f in tl.check(data).findings if f.blocks]
+    assert (found.problem, found.signal, found.experiment) == ("clock", "joint_angle", "b")
+    assert found.seconds == pytest.approx(late, abs=2e-3)
+
+
 @pytest.mark.parametrize("delay", [0.009, 0.02])
 def test_a_late_torque_is_no_wrong_sign(delay: float, tmp_path: Path) -> None:
     assert [f for f in tl.check(logs(tmp_path, delay=delay)).findings if f.blocks] == []

@@ -70,7 +70,7 @@ def test_stamps_that_jitter_are_noted_with_their_sd(share: float, noted: bool, t
     notes = found(tmp_path, (TIME, CURRENT, ANGLE), jittered)
     assert [(f.problem, f.experiment) for f in notes] == ([("sampling", "run_2")] if noted else [])
     if noted:
-        assert "jitter by 5 % of a step in run_2" in notes[0].detail
+        assert "time steps differ by 5 % in run_2" in notes[0].detail
     both = found(tmp_path, (TIME, CURRENT, ANGLE), jittered, (jittered[0], -ANGLE, CURRENT))
     assert [f.experiment for f in both] == ([None] if noted else [])
     assert not noted or "in 2 of 3 experiments" in both[0].detail
@@ -110,6 +110,16 @@ def test_both_limits_of_a_command_are_one_note(tmp_path: Path) -> None:
     assert note.count == int(np.sum(np.abs(CURRENT) >= 0.8))
     assert "at 0.8 A for" in note.detail
     assert "and at −0.8 A for" in note.detail
+
+
+def test_a_smooth_step_that_rests_is_at_no_limit(tmp_path: Path) -> None:
+    """It slows down before it rests; a command that is cut off does not, also where it is logged in steps."""
+    phase = np.clip(TIME % 2.0 - 0.3, 0.0, 1.0)
+    eased = 2.0 * np.where(TIME % 4.0 < 2.0, phase, 1.0 - phase)
+    smooth = 0.5 * eased**2 * (3.0 - eased)
+    assert [f for f in found(tmp_path, (TIME, ANGLE, smooth)) if f.problem == "saturation"] == []
+    cut = np.round(np.minimum(CURRENT, 0.8) / 0.005) * 0.005
+    assert [f.problem for f in found(tmp_path, (TIME, ANGLE, cut))] == ["saturation"]
 
 
 def test_a_short_touch_of_the_extreme_and_a_command_of_few_levels_are_no_limit(tmp_path: Path) -> None:

@@ -245,11 +245,14 @@ def test_broken_dataset_is_an_error_that_says_where(draft, write, mutate, messag
     assert re.search(message, str(caught.value)), str(caught.value)
 
 
-def test_amperes_need_a_torque_constant(two_inertia, write):
-    """two_inertia has none, so its motor_torque is a torque."""
-    two_inertia.toml["signals"]["motor_torque"]["unit"] = "A"
-    with pytest.raises(DatasetError, match=r"motor_torque.unit: unit 'A': no parameter of two_inertia converts it"):
-        load(write(two_inertia))
+def test_amperes_without_a_torque_constant_are_warned_of(two_inertia, write):
+    two_inertia.toml["signals"]["motor_torque"]["unit"] = "mA"
+    assumed = "No nominal value given for torque_constant; 1 is assumed, exactly"
+    rig = load(write(two_inertia))
+    assert assumed in rig.warnings
+    assert rig.signals["motor_torque"].si_unit == "A"
+    two_inertia.toml["system"]["parameters"]["torque_constant"] = {"value": 0.07, "sd": 0.0}
+    assert assumed not in load(write(two_inertia)).warnings
 
 
 @pytest.mark.parametrize("name", ["motor_inertia", "gear_ratio", "cable_stiffness"])

@@ -137,7 +137,7 @@ def test_the_injection_is_softer_for_a_noisier_sensor(twin_case: Any) -> None:
     dataset = replace(twin_case.dataset, controller=None)
     command = np.concatenate([e.data["motor_torque"].to_numpy() for e in dataset.train])
     for noise in (2e-3, 8e-3):
-        signal = replace(dataset.signals["motor_angle"], noise_sd=noise)
+        signal = replace(dataset.signals["motor_angle"], noise_sd=noise, resolution=None)
         noisy = replace(dataset, signals={**dataset.signals, "motor_angle": signal})
         replay = choose_replay(noisy, twin_case.system)
         assert replay.kind == "injection"

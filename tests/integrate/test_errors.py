@@ -129,6 +129,7 @@ def magnitude(low, high):
 
 DRAWN = {
     "motor_inertia": magnitude(-6, 0), "joint_inertia": magnitude(-5, 1), "gear_ratio": magnitude(-1, 2.5),
+    "torque_constant": magnitude(-3, 1),
     "cable_stiffness": magnitude(-1, 5), "cable_damping": magnitude(-4, 1), "gravity_torque": st.floats(-5.0, 5.0),
     "motor_coulomb": magnitude(-5, 0), "motor_viscous": magnitude(-6, 0), "joint_coulomb": magnitude(-5, 1),
     "joint_viscous": magnitude(-5, 1), "joint_static_excess": magnitude(-4, 0),

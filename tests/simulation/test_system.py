@@ -81,6 +81,24 @@ def test_a_payload_adds_to_what_an_experiment_states() -> None:
     assert SIM.under(loaded).parameters["inertia"] == pytest.approx(0.03)
 
 
+@pytest.mark.parametrize(
+    ("kind", "given"),
+    [
+        ("rigid_joint", {"inertia": 0.02, "gravity_torque": 0.5}),
+        (
+            "two_inertia",
+            {"motor_inertia": 1e-4, "joint_inertia": 0.02, "gear_ratio": 10.0, "gravity_torque": 0.5}
+            | {"cable_stiffness": 50.0, "cable_damping": 0.05},
+        ),
+    ],
+)
+def test_a_torque_constant_makes_a_current_a_torque(kind: str, given: dict[str, float]) -> None:
+    """Without one the command is a torque. A sixteenth is exact in binary: all bits agree."""
+    by_torque = tl.System(kind, parameters=given).simulate(PUSHED)
+    by_current = tl.System(kind, parameters=given | {"torque_constant": 1 / 16}).simulate(16.0 * PUSHED)
+    pd.testing.assert_frame_equal(by_torque.outputs, by_current.outputs, check_exact=True)
+
+
 def test_changes_leave_the_original_as_it_was() -> None:
     stribeck = {"static_excess": 0.1, "joint_stribeck_velocity": 0.05}  # own and full names
     changed = SIM.with_parameters({"inertia": 0.03}).with_effects({"joint:stribeck": stribeck})

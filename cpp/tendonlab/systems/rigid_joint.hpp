@@ -28,14 +28,11 @@ struct RigidJoint : SystemDefaults {
   T lever[1][dof];
 
   static constexpr auto parameters() {
-    return std::tuple{
-        parameter(&RigidJoint::inertia, "inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12, inf,
-                  "inertia of everything that moves"),
-        parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure, 0.0, -inf, inf,
-                  "gravity torque at 90 degrees", ParameterRole::payload),
-        parameter(&RigidJoint::torque_constant, "torque_constant", Dimension::effort_per_command, Purpose::structure,
-                  1.0, -inf, inf, "effort per unit of the command; known unless sd says otherwise",
-                  ParameterRole::command_gain)};
+    return std::tuple{parameter(&RigidJoint::inertia, "inertia", Dimension::inertia, Purpose::structure, 1.0, 1e-12,
+                                inf, "inertia of everything that moves"),
+                      parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
+                                0.0, -inf, inf, "gravity torque at 90 degrees", ParameterRole::payload),
+                      command_gain(&RigidJoint::torque_constant)};
   }
   void prepare() {
     inverse_inertia[0] = 1.0 / inertia;

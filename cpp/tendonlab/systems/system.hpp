@@ -31,6 +31,12 @@ struct MovingCoupling : Coupling<S, ports, n> {
   S lever[ports][n]{};
   std::array<S, n> inverse_inertia{};
 };
+/// The parameter that makes a current, a voltage or a number of a command an effort: 1 where commands are efforts.
+template <class System, class T>
+constexpr auto command_gain(T System::*field) {
+  return parameter(field, "torque_constant", Dimension::effort_per_command, Purpose::structure, 1.0, -inf, inf,
+                   "effort per unit of the command; known unless sd says otherwise", ParameterRole::command_gain);
+}
 /// One joint that a motor turns against gravity, with what is known to act on it. Its friction sees the mean of what
 /// the motor delivers and the load takes.
 template <class S>

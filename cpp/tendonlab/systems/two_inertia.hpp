@@ -3,13 +3,13 @@
 
 namespace tendonlab::systems {
 /// Motor and joint joined by an elastic cable over a gear ratio N:
-///   J_m q_m'' = u - friction_m - f/N,   J_l q_l'' = f - friction_l - g_tau sin q_l + known,
+///   J_m q_m'' = K_t u - friction_m - f/N,   J_l q_l'' = f - friction_l - g_tau sin q_l + known,
 ///   f = k (q_m/N - q_l) + c (q_m'/N - q_l').
 template <class T>
 struct TwoInertia : SystemDefaults {
   static constexpr std::string_view name = "two_inertia",
                                     equation =
-                                        "J_m q_m'' = u - friction_m - f/N; J_l q_l'' = f - friction_l - g_tau "
+                                        "J_m q_m'' = K_t u - friction_m - f/N; J_l q_l'' = f - friction_l - g_tau "
                                         "sin(q_l) + known_torque; f = k (q_m/N - q_l) + c (q_m'/N - q_l')";
   static constexpr int dof = 2, directions = 2, sides = 1;
   enum PortOf { motor, joint, contact, cable };
@@ -18,7 +18,7 @@ struct TwoInertia : SystemDefaults {
                                     port("contact").turns(joint_sense), port("cable").with_gap(flank)};
   static constexpr bool joined[4][2] = {{true, false}, {false, true}, {false, true}, {true, true}};
   static constexpr std::array inputs{
-      input("motor_torque", Dimension::command, Between::hold, "torque of the motor").required(),
+      input("motor_torque", Dimension::command, Between::hold, "command to the motor").required(),
       input("known_torque", Dimension::effort, Between::hold, "effort known to act on the joint")};
   static constexpr std::array outputs{
       output("motor_angle", Dimension::displacement, "angle of the motor").position_of(0),
@@ -34,7 +34,7 @@ struct TwoInertia : SystemDefaults {
   Chain<T, loading::All> load;
   Chain<T, actuation::All> actuation;
   std::array<Chain<T, sensing::All>, 3> sensor;
-  T motor_inertia, joint_inertia, gear_ratio, gravity_torque;
+  T motor_inertia, joint_inertia, gear_ratio, gravity_torque, torque_constant;
   std::array<T, dof> inverse_inertia;
   T lever[4][dof];
 
@@ -46,7 +46,8 @@ struct TwoInertia : SystemDefaults {
                       parameter(&TwoInertia::gear_ratio, "gear_ratio", Dimension::ratio, Purpose::structure, 1.0, 1e-9,
                                 inf, "turns of the motor per turn of the joint"),
                       parameter(&TwoInertia::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
-                                0.0, -inf, inf, "gravity torque at 90 degrees", ParameterRole::payload)};
+                                0.0, -inf, inf, "gravity torque at 90 degrees", ParameterRole::payload),
+                      command_gain(&TwoInertia::torque_constant)};
   }
   void prepare() {
     inverse_inertia = {1.0 / motor_inertia, 1.0 / joint_inertia};
@@ -56,10 +57,10 @@ struct TwoInertia : SystemDefaults {
     lever[cable][1] = T(-1.0);
   }
   std::array<T, dof> rigid_shape() const { return {T(1.0), lever[cable][0]}; }
-  T effort_per_command() const { return T(1.0); }
+  T effort_per_command() const { return torque_constant; }
   template <class S, class Modes, class Inputs>
   Coupling<S, 4, 2> couple(const Motion<S, 2>& at, const Modes& mode, const Inputs& in) const {
-    const S torque = actuation.apply(S(in.command(at)));
+    const S torque = actuation.apply(S(torque_constant * in.command(at)));
     const S gravity = gravity_torque * sin(at.position[1]), known = load.apply(in.template input<1>(at.time));
     Sliding<S> pull;
     pull.position = lever[cable][0] * at.position[0] - at.position[1];

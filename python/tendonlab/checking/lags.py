@@ -19,7 +19,8 @@ FAR = 3  # steps from the common lag at which only another clock is likely to su
 OWN = 3.0  # nats by which a lag of its own must suit an experiment better than the common one, to start the search
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
-ROUNDS, CLOSE = 12, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
+MOST_ROUNDS, CLOSE = 40, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
+ROUNDS = 12  # of a robust regression
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
     kept = logs.regular(SAMPLES)
     share = np.full(len(equation.predicted), ROUGH_SHARE)
     sd = np.full(late.shape, np.inf)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         moved = logs.earlier(dict(zip(channels, late, strict=True)))
         at = terms(equation, moved.at(kept))
         fit = at.fit(share)
@@ -69,9 +70,10 @@ def lags(equation: Equation, logs: Logs) -> Lags:
 def _gain(
     equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
 ) -> np.ndarray:
-    """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each.
-    Nothing where friction in presliding suits it as well. Where nothing moves by an equation, beyond what dry friction
-    of its own brings: friction that falls with speed is highest in a slow run."""
+    """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each,
+    beyond what the middle experiment gains: one late sensor spoils the parameters of all. Nothing where friction in
+    presliding suits it as well. Where nothing moves by an equation, beyond what dry friction of its own brings:
+    friction that falls with speed is highest in a slow run."""
     common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
@@ -81,10 +83,11 @@ def _gain(
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
     gained = np.bincount(moved.run, nats, late.shape[1])
+    gained = np.maximum(gained - np.median(gained), 0.0)
     left = without.residual / (without.level * at.size * FREEDOM**0.5)[:, None]
     if equation.axes:
-        bent = [_by_bristles(equation, moved, left, i) for i in range(len(gained))]
-        return np.where(gained > 0.5 * (FREEDOM + 1) * share[0] * np.array(bent), gained, 0.0)
+        bent = [_by_bristles(equation, moved, left, i, share) for i in range(len(gained))]
+        return np.where(gained > 0.5 * (FREEDOM + 1) * np.array(bent), gained, 0.0)
     velocity = sliding(equation, moved, 0)
     if velocity is None:
         return gained
@@ -170,7 +173,8 @@ def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     inside = (best > 0) & (best < len(tried) - 1)
     gained = cost[common] - np.min(cost, axis=0)
     far = inside & (np.abs(tried[best] - tried[common]) >= FAR) & (gained > own) & bool(equation.moved)
-    far &= [bool(far[i]) and gained[i] > _by_bristles(equation, *there, i) for i in range(num)]
+    alike = np.ones(len(at.size))
+    far &= [bool(far[i]) and gained[i] > _by_bristles(equation, *there, i, alike) for i in range(num)]
     nats = 0.5 * (FREEDOM + 1) * ROUGH_SHARE * gained
     return np.where(inside, tried[best], 0) * logs.step, np.where(far, nats, 0.0)
 
@@ -187,14 +191,16 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
     return np.maximum(saved - np.median(saved), 0.0)
 
 
-def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int) -> float:
-    """By how much friction in presliding lowers the surprise of an experiment: while a motion is too small to slide,
-    friction is a spring, and the motion seems to lead. Nothing where none of its samples is judged."""
+def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:
+    """By how much friction in presliding lowers the surprise of an experiment, of each equation by its `share`: while a
+    motion is too small to slide, friction is a spring, and the motion seems to lead. Nothing where none of its samples
+    is judged."""
     here, saved = logs.run == experiment, 0.0
     for k, name in enumerate(equation.moved if here.any() else ()):
         position, speed = logs.moving[name][:2, here]
         for deflection in _deflections(position):
-            saved = max(saved, _saved(left[k, here], np.column_stack([_friction(speed), deflection])))
+            columns = np.column_stack([_friction(speed), deflection])
+            saved = max(saved, float(share[k]) * _saved(left[k, here], columns))
     return saved
 
 

@@ -16,6 +16,7 @@ GAP = 1.5  # median steps between two stamps that make a gap
 JITTER, DRIFT = 0.02, 0.01  # relative: scatter of steps, and change of their median from the first to the last quarter
 LEAST_STEPS = 8  # of a record whose stamps are judged
 PLATEAU, LEAST_RUN = 0.01, 5  # share of samples at an extreme, and samples in a row, that make a limit
+SLOWED = 0.25  # of its usual change: a signal that changes less beside its stays eases into them
 COARSE = 4.0  # times its noise that a step of a reading must be to matter
 FINE = 1000.0  # steps within the travel: finer readings need no word
 
@@ -39,7 +40,8 @@ def _jitter(dataset: Dataset) -> Iterator[Finding]:
     loud = {name: share for name, share in scatter.items() if share > JITTER}
     if loud:
         where = next(iter(loud)) if len(loud) == 1 else f"{len(loud)} of {len(dataset)} experiments"
-        text = f"the time stamps jitter by {100 * max(loud.values()):.0f} % of a step in {where}"
+        share = 100 * max(loud.values())
+        text = f"the time steps differ by {share:.0f} % in {where}: right if the stamps are those of the samples"
         yield Finding(problem="sampling", experiment=next(iter(loud)) if len(loud) == 1 else None, detail=text)
 
 
@@ -101,6 +103,7 @@ def _limits(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
             continue  # a command of few levels
         stays = {float(edge): values == edge for edge in (values.max(), values.min())}
         stays = {edge: at for edge, at in stays.items() if at.mean() > PLATEAU and _longest(at) >= LEAST_RUN}
+        stays = {edge: at for edge, at in stays.items() if _is_met_at_speed(values, at)}
         if stays:
             unit = unit_text(dataset.signals[name].si_unit)
             shares = (f"at {number(e)} {unit} for {100 * at.mean():.0f} % of the samples" for e, at in stays.items())
@@ -123,6 +126,17 @@ def _steps(dataset: Dataset) -> Iterator[Finding]:
             size = f"{number(step)} {unit_text(spec.si_unit)}".rstrip()
             text = f"{name} changes in steps of {size}; state this as its `resolution`"
             yield Finding(problem="quantisation", signal=name, detail=text)
+
+
+def _is_met_at_speed(values: np.ndarray, at: np.ndarray) -> bool:
+    """Whether a signal still changes as usual next to its stays at an extreme. One that slows down before it rests, as
+    a smooth step does, is at no limit."""
+    moved = np.abs(values[LEAST_RUN:] - values[:-LEAST_RUN])  # over a few samples: readings may come in steps
+    edges = np.diff(at.astype(int))
+    before, after = np.flatnonzero(edges > 0) - LEAST_RUN, np.flatnonzero(edges < 0) + 1
+    beside = moved[np.concatenate([before[before >= 0], after[after < len(moved)]])]
+    usual = float(np.median(moved[moved > 0])) if moved.any() else 0.0
+    return not len(beside) or float(np.median(beside)) > SLOWED * usual
 
 
 def _note(

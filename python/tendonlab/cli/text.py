@@ -136,7 +136,7 @@ def errors_text(run: Trajectory, experiment: Experiment) -> str:
 
 
 def system_text(info: SystemInfo, *, axis: str) -> str:
-    """A system: equation, signals and parameters with their units, and what its simulator contains."""
+    """A system: equation, signals and parameters with their units, what its simulator contains, and all effects."""
     lines = [f"{info.kind}: units of a {axis} axis"]
     lines += [wrapped(part.strip(), indent="  ", hanging=" " * 6) for part in info.equation.split(";")]
     optional = {s.name for s in info.inputs if not s.required}
@@ -147,7 +147,8 @@ def system_text(info: SystemInfo, *, axis: str) -> str:
     lines += ["  parameters", *(_named(row.name, parameter_unit(info, row, axis), row.meaning) for row in own)]
     nominal = listing(info.default_nominal_effects) or "no effect"
     contains = f"contains {nominal}, unless the dataset says otherwise"
-    return "\n".join([*lines, wrapped(contains, indent="  ", hanging=" " * 6)])
+    effects = f"effects: {', '.join(e.name for e in info.effects if not e.structural)}"
+    return "\n".join([*lines, *(wrapped(text, indent="  ", hanging=" " * 6) for text in (contains, effects))])
 
 
 def _named(name: str, unit: str, meaning: str) -> str:

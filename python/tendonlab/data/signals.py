@@ -86,7 +86,7 @@ def _expected_unit(
 
 
 def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
-    """The unit of the command: of an effort, or A, V or 1 where a gain of the command converts it."""
+    """The unit of the command: of an effort, or A, V or 1, which a gain of the command converts."""
     effort = unit("effort", axis)
     command = info.command
     if command is None or command.name not in tables.values:
@@ -98,11 +98,7 @@ def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
             return effort
         converted = next((allowed for allowed in COMMAND_UNITS if same_dimension(written, allowed)), None)
         if converted is not None:
-            if info.with_role("command_gain") is not None:
-                return converted
-            raise DatasetError(
-                f"unit {written!r}: no parameter of {info.kind} converts it; expected one like {effort!r}"
-            )
+            return converted
         require_dimension(written, effort)
     except DatasetError as error:
         raise table.error("unit", str(error)) from error

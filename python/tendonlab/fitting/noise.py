@@ -95,10 +95,10 @@ def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared])
     """Sd of the white noise of each output, in its unit: as stated, else from fourth differences; NaN where no record
     measured it.
 
-    At least that of rounding to the resolution, resolution/√12. The fourth differences of a record that moves on at
-    every sample hold its rounding already, those of one that repeats its readings hold none of it: so the larger of
-    the two counts, not their sum. At least 1e-7 of the record's spread, whatever its offset; 1 for a record that never
-    changes. Raises DatasetError where no output was measured."""
+    Rounding to the resolution, stated or found, adds resolution/√12. To a stated noise it comes in squares. The fourth
+    differences of a record that moves on at every sample hold its rounding already, those of one that repeats its
+    readings hold none of it: there the larger of the two counts. At least 1e-7 of the record's spread, whatever its
+    offset; 1 for a record that never changes. Raises DatasetError where no output was measured."""
     outputs = system.info.outputs
     noise = np.full(len(outputs), np.nan)
     for c, output in enumerate(outputs):
@@ -116,13 +116,19 @@ def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
     """Sd of the white noise of one output, from its records; see `sensor_noise`."""
     rounding = rounding_of(signal)
     smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
-    stated = signal.noise_sd or float(np.median([noise_sd(r) for r in records]))
-    return max(stated, rounding, smallest) or 1.0
+    if signal.noise_sd:
+        return max(float(np.hypot(signal.noise_sd, rounding)), smallest)
+    return max(float(np.median([noise_sd(r) for r in records])), rounding, smallest) or 1.0
 
 
 def rounding_of(signal: SignalSpec) -> float:
     """Sd of rounding to the resolution of a signal, in its unit."""
     return float((signal.resolution or 0.0) / np.sqrt(12.0))
+
+
+def without_rounding(noise: float, signal: SignalSpec) -> float:
+    """The part of a signal's noise that is there before its readings are rounded."""
+    return float(np.sqrt(max(0.0, noise**2 - rounding_of(signal) ** 2)))
 
 
 def white(noise: np.ndarray) -> Floor:

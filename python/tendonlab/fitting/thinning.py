@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from tendonlab.data import Dataset
-from tendonlab.fitting.noise import noise_of
+from tendonlab.fitting.noise import noise_of, without_rounding
 from tendonlab.simulation.catalog import InputInfo
 from tendonlab.simulation.prepare import is_held
 from tendonlab.simulation.records import Experiment, SignalSpec
@@ -82,8 +82,9 @@ def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinne
 
 
 def _smoothed(signal: SignalSpec, noise: float, gain: float) -> SignalSpec:
-    """The signal whose noise, rounding included, fell by `gain`."""
-    return replace(signal, noise_sd=gain * noise, resolution=signal.resolution and gain * signal.resolution)
+    """The signal whose `noise`, rounding included, fell by `gain`."""
+    resolution = signal.resolution and gain * signal.resolution
+    return replace(signal, noise_sd=gain * without_rounding(noise, signal), resolution=resolution)
 
 
 def _windows(row: np.ndarray, factor: int) -> np.ndarray:

@@ -60,7 +60,7 @@ class SimulatedRig:
         return replace(self.rig, experiments=tuple(logs))
 
     def _dataset(self, experiments: list[Experiment]) -> Dataset:
-        stated = {s.name: max(s.noise, s.resolution / 12.0**0.5) for s in self.noise.sensors}
+        stated = {s.name: s.noise for s in self.noise.sensors}
         signals = {name: replace(s, noise_sd=stated.get(name, s.noise_sd)) for name, s in self.rig.signals.items()}
         return replace(self.rig, experiments=tuple(experiments), signals=signals)
 

@@ -13,7 +13,7 @@ from tendonlab.data import Dataset
 from tendonlab.diagnosis.floor import first_floor, rough_fit
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of
+from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of, without_rounding
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import SignalSpec
@@ -107,4 +107,4 @@ def _white(signal: SignalSpec, case: Case, c: int) -> float:
     if signal.noise_sd is not None:
         return signal.noise_sd
     total = noise_of(signal, [ready.measured[c] for ready in case.prepared if np.isfinite(ready.measured[c]).any()])
-    return float(np.sqrt(max(0.0, total**2 - (signal.resolution or 0.0) ** 2 / 12.0)))
+    return without_rounding(total, signal)

@@ -57,8 +57,8 @@ class System:
             if name not in known:
                 offer = expected_one_of(name, known)
                 raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
-        stated = {p.name: p.typical for p in self.info.parameters if p.purpose == "condition" and p.name in known}
-        given = {**stated, **self.parameters}
+        usual = [p for p in self.info.parameters if p.purpose == "condition" or p.role == "command_gain"]
+        given = {**{p.name: p.typical for p in usual if p.name in known}, **self.parameters}
         self._require_all(known, given)
         checked = FrozenNumbers({name: self._within(name, value) for name, value in given.items()})
         object.__setattr__(self, "parameters", checked)

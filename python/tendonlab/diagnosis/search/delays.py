@@ -12,7 +12,7 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 
 LEAST = 0.05  # of the step of the logs
-LEAST_BY_SAMPLES, LONGEST = 0.5, 1e-3  # the same where a system answers sample by sample, s at most
+LEAST_BY_SAMPLES = 0.5  # the same where a system answers sample by sample
 TOO_SHORT = "its delay of {:.2g} ms is shorter than {:.2g} ms, finer than logs with steps of {:.2g} ms tell time"
 
 
@@ -24,6 +24,6 @@ def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
     if law.effect != "delay" or any(e.averaged for e in case.experiments):
         return ""
     step = float(np.median([np.median(np.diff(e.time)) for e in case.experiments]))
-    least = LEAST * step if info.dof else min(LEAST_BY_SAMPLES * step, LONGEST)
+    least = (LEAST if info.dof else LEAST_BY_SAMPLES) * step
     delay = fitted.system.parameters[law.parameters[0]]
     return TOO_SHORT.format(*(1e3 * t for t in (delay, least, step))) if delay < least else ""
