@@ -20,6 +20,7 @@ from tendonlab.blind.write import record, write_dataset
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import read_logs
 from tendonlab.checking.scales import RATIO, ROUGH, ROUGH_SHARE, _refined, _searched, _suspects
+from tendonlab.checking.tensions import pushing_cables
 
 STILL = Strength(
     amplitude=0.0, gap_noise=0.0, nominal_gap_noise=0.0, floor=np.zeros(1), limited=False, met=True, separation={}
@@ -45,6 +46,21 @@ def found(folder: Path, system: str, fault: Fault | None) -> list[tuple[str, str
 @pytest.mark.parametrize("system", ["bowden_pair", "ccsrm", "cable_joint"])
 def test_right_logs_pass(tmp_path: Path, system: str) -> None:
     assert found(tmp_path, system, None) == []
+
+
+@pytest.mark.parametrize("signal", ["tension_21", "tension_22"])
+def test_a_cable_that_pushes_was_logged_with_the_wrong_sign(tmp_path: Path, signal: str) -> None:
+    """Also one that friction holds, whose equation explains too little to judge by."""
+    [(kind, place, size)] = found(tmp_path, "ccsrm", Fault(problem="sign", signals=(signal,), factor=-1.0))
+    assert (kind, place, size) == ("sign", signal, -1.0)
+
+
+def test_a_force_sensor_that_was_zeroed_under_pretension_has_no_wrong_sign(tmp_path: Path) -> None:
+    found(tmp_path, "ccsrm", None)
+    rig = tl.load(tmp_path / "rig")
+    for experiment in rig.experiments:
+        experiment.data["tension_22"] -= experiment.data["tension_22"].mean()
+    assert list(pushing_cables(rig)) == []
 
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, -1.0, 1000.0, 0.001])

@@ -14,6 +14,7 @@ from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.spikes import marks
+from tendonlab.checking.tensions import pushing_cables
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.simulation.system import System, require_system
 from tendonlab.threads import with_one_blas_thread
@@ -37,7 +38,9 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     system = dataset.system() if system is None else require_system(system)
     marked = {} if system.info.steady else marks(dataset)
     found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
-    if system.info.steady:
+    if pushing := list(pushing_cables(dataset)):  # all else is judged once these are corrected
+        found += pushing
+    elif system.info.steady:
         notes.append(UNTIMED.format(kind=system.kind))
     elif (logs := read_logs(dataset, system.info, marked)) is None:
         notes.append(UNMOVED)
