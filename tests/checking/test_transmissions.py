@@ -48,6 +48,20 @@ def test_right_logs_pass(tmp_path: Path, system: str) -> None:
     assert found(tmp_path, system, None) == []
 
 
+def test_a_turned_velocity_of_a_bowden_pair_is_found(tmp_path: Path) -> None:
+    fault = Fault(problem="sign", signals=("input_velocity",), factor=-1.0)
+    assert found(tmp_path, "bowden_pair", fault) == [("sign", "input_velocity", -1.0)]
+
+
+@pytest.mark.parametrize("amplitude", [1.0, 5.0, 10.0])
+def test_strong_friction_that_the_simulator_lacks_turns_no_velocity(tmp_path: Path, amplitude: float) -> None:
+    draw, system = np.random.default_rng(3), SYSTEMS["bowden_pair"]
+    rig = draw_rig(draw, effect="sheath:coulomb", kind="effect", system=system, excitation="rich")
+    run = record([rig], [replace(STILL, amplitude=amplitude)])[0]
+    write_dataset(rig, run, tmp_path / "rig", name="rig", description="")
+    assert [f for f in tl.check(tl.load(tmp_path / "rig")).findings if f.blocks] == []
+
+
 @pytest.mark.parametrize("signal", ["tension_21", "tension_22"])
 def test_a_cable_that_pushes_was_logged_with_the_wrong_sign(tmp_path: Path, signal: str) -> None:
     """Also one that friction holds, whose equation explains too little to judge by."""

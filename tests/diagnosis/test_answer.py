@@ -32,6 +32,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     nominal: Any = SimpleNamespace(mean_square=77.0)
     monkeypatch.setattr(answer, "followed", lambda case, model: 0.25)
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
+    monkeypatch.setattr(answer, "strain", lambda case, model: 6.0)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
     final = SimpleNamespace(mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
@@ -45,6 +46,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     search.selected, search.final = (), tuned
     none = _levels(search, nominal, stages, stages, floor, Drift("joint", -0.1, 0.001))
     assert (found.drifted, none.drifted) == (1.0, 0.001)
+    assert (found.strained, none.strained) == (0.0, 6.0)
     assert none.explained is None
     assert (none.trained, none.followed, none.scattered) == ((1.0, 0.0, 0.0) if repeated else (20.0, 0.25, 3.0))
 

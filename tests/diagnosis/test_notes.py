@@ -94,6 +94,8 @@ def test_an_error_that_is_no_noise_is_explained() -> None:
     assert "predicts 45 % of its mean square" in follows
     (large,) = notes.no_noise(replace(near, trained=16.0))
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
+    (strained,) = notes.no_noise(replace(near, strained=37.2))
+    assert "37 stated standard deviations away" in strained
     (differs,) = notes.no_noise(replace(near, scattered=6.25))
     assert "friction that differs by 5 % from run to run" in differs
 

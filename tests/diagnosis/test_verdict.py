@@ -8,7 +8,17 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis.answer.verdict import FAR, PARTLY, PARTLY_ASSUMED, Levels, Verdict, _group, decide, marginals
+from tendonlab.diagnosis.answer.verdict import (
+    FAR,
+    PARTLY,
+    PARTLY_ASSUMED,
+    STRAINED,
+    Levels,
+    Verdict,
+    _group,
+    decide,
+    marginals,
+)
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import RARE
 
@@ -38,6 +48,18 @@ def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(s
     found = decide((), (), replace(near, **signs))
     assert found.verdict == "unknown_effect"
     assert found.probability["parameters_only"] < 0.05
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+def test_tuning_is_not_all_where_it_strains_what_was_stated(repeated: bool) -> None:
+    """By how much turns the verdict, without a step."""
+    near = Levels(nominal=1e4, tuned=1.0, refitted=1.0, explained=None, left=1.0, repeated=repeated)
+    found = [decide((), (), replace(near, strained=s * STRAINED)) for s in (0.0, 0.5, 0.95, 1.05, 4.0)]
+    told = ["parameters_only"] * 3 + ["unknown_effect"] * 2
+    assert [verdict.verdict for verdict in found] == told
+    unknown = [verdict.probability["unknown_effect"] for verdict in found]
+    assert unknown == sorted(unknown)
+    assert unknown[1] < 0.1 < 0.9 < unknown[-1]
 
 
 @pytest.mark.parametrize("repeated", [False, True])

@@ -79,12 +79,22 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
         return []
     if not _helps(best.fit, base, told) or not _convinces(best.fit, told) or _suits_late(equation, logs, best, share):
         return []
-    beyond = best.value * (RATIO**2 if abs(best.value) > 1.0 else RATIO**-2)
-    if best.value == -1.0 and _heals(best.fit, base, told):
-        beyond = AWAY
-    if _fitted(equation, fine, best.signals, beyond, share).cost < best.fit.cost + LEAST_GAIN:
-        return []  # a channel that suits at any such size is explained away, not explained
+    if _only_turns(equation, best.signals):  # of any size: its sign must be what the beliefs ask for
+        if best.fit.strain > CREDIBLE:
+            return []
+    elif _is_explained_away(equation, fine, best, base, told, share):
+        return []
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
+
+
+def _is_explained_away(
+    equation: Equation, logs: Logs, factor: Factor, base: Fit, told: np.ndarray, share: np.ndarray
+) -> bool:
+    """Whether a channel suits at any size beyond a factor as well: then nothing is explained."""
+    beyond = factor.value * (RATIO**2 if abs(factor.value) > 1.0 else RATIO**-2)
+    if factor.value == -1.0 and _heals(factor.fit, base, told):
+        beyond = AWAY
+    return _fitted(equation, logs, factor.signals, beyond, share).cost < factor.fit.cost + LEAST_GAIN
 
 
 def _is_credible(factor: Factor, plain: Fit) -> bool:

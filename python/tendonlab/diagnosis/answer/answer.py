@@ -11,6 +11,7 @@ import pandas as pd
 from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
 from tendonlab.diagnosis.answer.allowed import allowed
+from tendonlab.diagnosis.answer.beliefs import strain
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.explore import explore
@@ -128,6 +129,7 @@ def _levels(
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
         followed=followed(case, final) if doubtful else 0.0,
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
+        strained=0.0 if search.selected else strain(case, final),
         drifted=drift.chance if drift and drift.tells else 1.0,
     )
     return outlier.left_out(levels, nominal) if outlier else levels

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
+from tendonlab.diagnosis.answer.beliefs import pulled
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun
 from tendonlab.diagnosis.drift import Drift
@@ -42,17 +43,12 @@ def caveats(
 
 def _pulled(case: Case, final: Fitted) -> list[str]:
     said = []
-    for free, x in zip(final.free, final.x, strict=True):
-        stated = case.dataset.parameters.get(free.name)
-        if stated is None or not stated.sd or not np.isfinite(stated.sd):
-            continue
-        value = free.value(float(x))
-        away = abs(value - stated.value) / stated.sd
-        if away > PULLED:
-            fitted = f"{number(value)} {unit_text(final.system.unit(free.name))}".rstrip()
+    for of in pulled(case, final):
+        if of.away > PULLED:
+            fitted = f"{number(of.value)} {unit_text(final.system.unit(of.name))}".rstrip()
             said.append(
-                f"{capital(words(free.name))} was fitted at {fitted}: {away:.0f} standard deviations from the stated "
-                f"{number(stated.value)} ± {number(stated.sd, 2)}."
+                f"{capital(words(of.name))} was fitted at {fitted}: {of.away:.0f} standard deviations from the stated "
+                f"{number(of.stated)} ± {number(of.sd, 2)}."
             )
     return said
 

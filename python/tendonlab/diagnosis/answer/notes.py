@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
-from tendonlab.diagnosis.answer.verdict import Levels
+from tendonlab.diagnosis.answer.verdict import STRAINED, Levels
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.select import Search
@@ -173,8 +173,14 @@ def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, e
 
 
 def no_noise(levels: Levels) -> list[str]:
-    """Warnings where what the refitted simulator leaves cannot be noise although nothing repeats."""
+    """Warnings where what the refitted simulator leaves cannot be noise although nothing repeats, or where it needs
+    parameters that were stated to be elsewhere."""
     found = []
+    if levels.strained >= STRAINED:
+        found.append(
+            f"Tuning alone needs a parameter {levels.strained:.0f} stated standard deviations away from its stated "
+            "value, so something else is missing. If that standard deviation was stated too small, tuning may be all."
+        )
     if levels.followed >= FOLLOWED:
         found.append(
             "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "

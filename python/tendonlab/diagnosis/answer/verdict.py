@@ -20,10 +20,12 @@ EXPLAINED = 0.75  # share of the held-out excess that library effects must remov
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
 EXPLAINED_FAR = 0.85  # the same where they leave twice `FAR`: right effects removed 0.93 and more there
 WELL_KNOWN = 2.5  # by how much less that share scatters there
+STRAINED = 8.0  # stated sd from which on tuning a parameter is not believed: 16 rigs that lack nothing needed 5 at most
 AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
 SOFT, SAME_GROUP = 0.05, 0.2
+STEEP = 5.0  # how fast strained beliefs turn the verdict
 
 
 @dataclass(frozen=True)
@@ -38,8 +40,9 @@ class Levels:
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
     run-to-run friction may leave, and `followed`: the share of that which follows the motion or drifts; and, where
-    nothing was selected, `scattered`: by how much friction differs from run to run. `drifted`: the chance of a trend of
-    friction over the session, 1 where there is none that matters."""
+    nothing was selected, `scattered`: by how much friction differs from run to run. `strained`: where nothing was
+    selected, by how many stated standard deviations tuning pulled the parameter that it pulled farthest. `drifted`: the
+    chance of a trend of friction over the session, 1 where there is none that matters."""
 
     nominal: float
     tuned: float
@@ -51,6 +54,7 @@ class Levels:
     trained: float = 1.0
     followed: float = 0.0
     scattered: float = 0.0
+    strained: float = 0.0
     drifted: float = 1.0
     foretold: float | None = None
 
@@ -118,10 +122,15 @@ def _whole(levels: Levels) -> float:
 
 def _room(levels: Levels) -> float:
     """By how much an error may be noise; below 0 it is none."""
-    common = min(FAR - levels.refitted, _chance_room(levels))
+    common = min(FAR - levels.refitted, _chance_room(levels), _belief_room(levels))
     if levels.repeated:
         return min(NEAR_FLOOR - levels.tuned, common)
     return min(SOFT, _noise_room(levels), FAR_SCATTERED - levels.scattered, common)
+
+
+def _belief_room(levels: Levels) -> float:
+    """By how much tuning may be all, by what was stated of the parameters; below 0 it is not."""
+    return STEEP * SOFT * float(np.log(STRAINED / max(levels.strained, 1e-9)))
 
 
 def _chance_room(levels: Levels) -> float:

@@ -1,0 +1,38 @@
+"""How far a fit pulls parameters from what was stated of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
+
+
+class Pulled(NamedTuple):
+    """A parameter whose uncertainty was stated: its fitted and stated `value`, SI, the stated `sd`, and by how many of
+    these it was pulled away."""
+
+    name: str
+    value: float
+    stated: float
+    sd: float
+    away: float
+
+
+def pulled(case: Case, fitted: Fitted) -> list[Pulled]:
+    """Every fitted parameter whose uncertainty was stated."""
+    found = []
+    for free, x in zip(fitted.free, fitted.x, strict=True):
+        stated = case.dataset.parameters.get(free.name)
+        if stated is not None and stated.sd and np.isfinite(stated.sd):
+            value = free.value(float(x))
+            away = abs(value - stated.value) / stated.sd
+            found.append(Pulled(free.name, value, stated.value, stated.sd, away))
+    return found
+
+
+def strain(case: Case, fitted: Fitted) -> float:
+    """By how many stated standard deviations the parameter was pulled that was pulled farthest."""
+    return max((of.away for of in pulled(case, fitted)), default=0.0)
