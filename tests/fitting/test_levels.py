@@ -144,6 +144,20 @@ def test_the_injection_is_softer_for_a_noisier_sensor(twin_case: Any) -> None:
         assert replay.kp == pytest.approx(0.01 * np.sqrt(np.mean(command**2)) / noise)
 
 
+@pytest.mark.parametrize(("rate", "omega"), [(200.0, 50.0), (100.0, 25.0), (60.0, 25.0), (40.0, 20.0)])
+def test_the_injection_is_as_stiff_as_the_samples_resolve(twin_case: Any, rate: float, omega: float) -> None:
+    """A quarter of a radian a sample; in slow logs up to twice that, as far as logs at 100 Hz go."""
+    dataset = replace(twin_case.dataset, controller=None)
+    signal = replace(dataset.signals["motor_angle"], noise_sd=1e-9, resolution=None)
+    slower = []
+    for experiment in dataset.experiments:
+        index = pd.Index(np.arange(len(experiment.time)) / rate, name=experiment.data.index.name)
+        slower.append(replace(experiment, data=experiment.data.set_axis(index)))
+    noiseless = replace(dataset, experiments=tuple(slower), signals={**dataset.signals, "motor_angle": signal})
+    replay = choose_replay(noiseless, twin_case.system)
+    assert 2.0 * replay.kp / replay.kd == pytest.approx(omega)
+
+
 def test_shares_are_those_of_each_output_alone(nominal: Fitted) -> None:
     """Residuals of the first output stay for ten rows and those of the second are independent; the third has none."""
     random = np.random.default_rng(0)

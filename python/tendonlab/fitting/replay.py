@@ -19,7 +19,8 @@ UNEXPLAINED, SHOWN = 0.1, 10.0  # share of the effort that no model explains, an
 SAME_CLOCK = 0.05  # of the controller's period, by which the logs' may differ for the two to be compared
 DAMPING = 1.0  # ratio of the loop: critical
 CONTRADICTED = 0.1  # of the rms command, by which a stated controller may miss what was logged; right ones miss 0.014
-RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection
+RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection; at most twice that,
+NEEDED = 25.0  # rad/s: where logs are so slow that this is not reached, what no model explains would add up
 
 
 def choose_replay(dataset: Dataset, system: System) -> Replay:
@@ -46,7 +47,8 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
     if not moved:
         return Replay("free")
     slowest = 0.5 * float(np.median([2 * np.pi * _frequency_below(time, values) for time, values in moved]))
-    fastest = RESOLVED * float(np.median([(len(time) - 1) / (time[-1] - time[0]) for time, _ in moved]))
+    resolved = RESOLVED * float(np.median([(len(time) - 1) / (time[-1] - time[0]) for time, _ in moved]))
+    fastest = max(resolved, min(2.0 * resolved, NEEDED))
     commanded = np.concatenate(
         [e.data[command].to_numpy(dtype=float) for e in dataset.train if command in e.data.columns]
     )
