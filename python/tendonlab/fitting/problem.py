@@ -15,6 +15,7 @@ from tendonlab import _core
 from tendonlab._core import Free
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import TOLERANCES, Case, fine_enough
+from tendonlab.fitting.centred import centred
 from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
 from tendonlab.fitting.noise import Floor, blocks_of, white
@@ -23,6 +24,7 @@ from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
 NUM_RESTARTS = 3
+NUM_CENTRED = 2  # times that a fit goes on once its friction is centred
 MAX_ITERATIONS, NEARLY = 25, 1e-6  # of a fit of a diagnosis
 BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
@@ -40,10 +42,20 @@ class Problem:
     initial: tuple[tuple[float, ...], ...] = ()
 
     def solve(self, *, max_iterations: int = 50, tolerance: float = 1e-8, **options: Any) -> Fitted:
-        """The model at its optimum; `options` as `_core.fit` has them. Raises NumericalError where a simulation fails
+        """The model at its optimum; `options` as `_core.fit` has them. Friction that all runs share ends in the
+        parameters. Raises NumericalError where a simulation fails
         at the start."""
-        options |= {"initial": self.initial, "max_iterations": max_iterations, "tolerance": tolerance}
-        return self._fitted(_core.fit(*self._stated(), **options))
+        options |= {"max_iterations": max_iterations, "tolerance": tolerance}
+        fit = self._fitted(_core.fit(*self._stated(), initial=self.initial, **options))
+        for _ in range(NUM_CENTRED):
+            if (there := centred(self, fit)) is None:
+                break
+            again = self.at(*there)
+            better = again._fitted(_core.fit(*again._stated(), initial=again.initial, **options))
+            if not better.cost < fit.cost:
+                break
+            fit = better
+        return fit
 
     def linearise(self) -> Fitted:
         """The model at the start. Raises NumericalError where a simulation fails."""
