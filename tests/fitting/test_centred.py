@@ -30,7 +30,7 @@ def started_off(twin_case: Any, shift: float) -> Any:
 def test_a_common_factor_goes_to_the_parameters_and_changes_no_residual(twin_case: Any, shift: float) -> None:
     problem = started_off(twin_case, shift)
     fit = problem.linearise()
-    there = centred(problem, fit)
+    there = centred(problem.case, fit, problem.tightness)
     assert there is not None
     again = problem.at(*there).linearise()
     factors = np.array([own[-1] for own in again.initial])
@@ -39,7 +39,7 @@ def test_a_common_factor_goes_to_the_parameters_and_changes_no_residual(twin_cas
         np.testing.assert_allclose(new.residual, old.residual, rtol=0, atol=1e-6 * np.abs(old.residual).max())
     gained = 0.5 * len(factors) * (shift / (0.008 * problem.tightness)) ** 2
     assert fit.cost - again.cost == pytest.approx(gained, rel=0.1)
-    assert centred(problem.at(*there), again) is None
+    assert centred(problem.case, again, problem.tightness) is None
 
 
 def test_friction_that_is_stated_in_a_run_stays(twin_case: Any) -> None:
@@ -48,8 +48,8 @@ def test_friction_that_is_stated_in_a_run_stays(twin_case: Any) -> None:
     k = problem.case.train[0]
     experiments = list(problem.case.experiments)
     experiments[k] = replace(experiments[k], conditions={"joint_coulomb": 0.05})
-    stated = replace(problem, case=replace(problem.case, experiments=tuple(experiments)))
-    assert centred(stated, problem.linearise()) is None
+    stated = replace(problem.case, experiments=tuple(experiments))
+    assert centred(stated, problem.linearise(), problem.tightness) is None
 
 
 @pytest.mark.parametrize(("value", "factor"), [(1.0, 0.5), (1.0, -0.5), (-1.0, 0.5), (-1.0, -0.5)])

@@ -7,32 +7,30 @@ next to nothing beside the residuals' walls."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tendonlab._core import Free
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
 from tendonlab.simulation.system import System
-
-if TYPE_CHECKING:
-    from tendonlab._core import Free
-    from tendonlab.fitting.fitted import Fitted
-    from tendonlab.fitting.problem import Problem
 
 WORTH = 0.5  # nats that the beliefs must gain
 FARTHEST = 1.0  # of the logarithm of a common factor
 
 
-def centred(problem: Problem, fit: Fitted) -> tuple[System, list[list[float]]] | None:
+def centred(case: Case, fit: Fitted, tightness: float) -> tuple[System, list[list[float]]] | None:
     """The system and the experiments' own unknowns of the `fit`, with the common factor of each element's friction
-    where the beliefs want it; None where they gain nothing."""
+    where the beliefs want it; None where they gain nothing. `tightness`: of the sd of the factors, as the fit had it.
+    """
     values, initial, gained = dict(fit.system.parameters), [list(own) for own in fit.initial], 0.0
-    for g, (group, sd) in enumerate(problem.case.scatter):
-        scaled = _scaled(problem, fit.system, group)
-        places = [len(problem.case.prepared[i].initial) + g for i in problem.case.train]
+    for g, (group, sd) in enumerate(case.scatter):
+        scaled = _scaled(case, fit, group)
+        places = [len(case.prepared[i].initial) + g for i in case.train]
         factors = np.array([own[at] for own, at in zip(initial, places, strict=True)])
         if not scaled:
             continue
-        shift, gain = _best_shift(scaled, values, factors, sd * problem.tightness)
+        shift, gain = _best_shift(scaled, values, factors, sd * tightness)
         gained += gain
         for free in scaled:
             values[free.name] *= float(np.exp(shift))
@@ -41,19 +39,15 @@ def centred(problem: Problem, fit: Fitted) -> tuple[System, list[list[float]]] |
     return (fit.system.with_parameters(values), initial) if gained > WORTH else None
 
 
-def _scaled(problem: Problem, system: System, group: Sequence[int]) -> list[Free]:
+def _scaled(case: Case, fit: Fitted, group: Sequence[int]) -> list[Free]:
     """The free parameters that the factor of a group scales; none where it scales one that is not free, or that is
     stated otherwise in an experiment."""
-    rows = system.info.parameters
-    names = {rows[k].name for k in group if system.parameters.get(rows[k].name, 0.0) != 0.0}
-    stated = {name for i in problem.case.train for name in _stated(problem, i)}
-    free = [f for f in problem.free if f.name in names]
+    rows, values = fit.system.info.parameters, fit.system.parameters
+    names = {rows[k].name for k in group if values.get(rows[k].name, 0.0) != 0.0}
+    trained = [case.experiments[i] for i in case.train]
+    stated = {name for e in trained for name in (*e.conditions, *e.add)}
+    free = [f for f in fit.free if f.name in names]
     return free if len(free) == len(names) and not names & stated else []
-
-
-def _stated(problem: Problem, i: int) -> set[str]:
-    experiment = problem.case.experiments[i]
-    return {*experiment.conditions, *experiment.add}
 
 
 def _best_shift(

@@ -48,7 +48,7 @@ class Problem:
         options |= {"max_iterations": max_iterations, "tolerance": tolerance}
         fit = self._fitted(_core.fit(*self._stated(), initial=self.initial, **options))
         for _ in range(NUM_CENTRED):
-            if (there := centred(self, fit)) is None:
+            if (there := centred(self.case, fit, self.tightness)) is None:
                 break
             again = self.at(*there)
             better = again._fitted(_core.fit(*again._stated(), initial=again.initial, **options))

@@ -62,12 +62,6 @@ class SystemInfo(_core.SystemInfo):
     def __reduce__(self) -> tuple[object, tuple[str]]:
         return system_info, (self.kind,)
 
-    def __str__(self) -> str:
-        """The listing of `tendonlab systems`, in the units of a rotary axis."""
-        from tendonlab.cli.text import system_text
-
-        return system_text(self, axis="rotary")
-
     def __repr__(self) -> str:
         inputs, outputs = (", ".join(s.name for s in signals) for signals in (self.inputs, self.outputs))
         return f"SystemInfo({self.kind}: {inputs} -> {outputs}; {len(self.effects)} effects)"
