@@ -53,3 +53,8 @@ def test_only_cases_that_lack_known_effects_are_told(
     found = {path.parent.name: json.loads(path.read_text()) for path in out.glob(f"*/{REPORT}")}
     assert found == expected
     assert 0 < len(found) < len(truths)
+
+
+def test_reports_that_tell_the_truth_stay_away_from_the_cases(drawn: Drawn) -> None:
+    with pytest.raises(ValueError, match="these reports tell the truth; expected a folder outside"):
+        tell(drawn.sealed, drawn.cases, drawn.cases.parent / "told", progress=False)

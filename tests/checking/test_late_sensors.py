@@ -62,7 +62,7 @@ def test_a_late_sensor_is_no_wrong_scale(late: float, tmp_path: Path) -> None:
     assert [f for f in tl.check(logs(tmp_path, late=late)).findings if f.blocks] == []
 
 
-@pytest.mark.parametrize("late", [0.03, 0.08])
+@pytest.mark.parametrize("late", [0.03, 0.08, 0.1])
 def test_one_sensor_that_is_late_in_one_run_is_found_beside_the_others(late: float, tmp_path: Path) -> None:
     """A stiff cable makes the torque sensor follow the late angle for a while; in the end the angle alone is late."""
     data = logs(tmp_path)

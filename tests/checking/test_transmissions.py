@@ -74,7 +74,7 @@ def test_a_force_sensor_that_was_zeroed_under_pretension_has_no_wrong_sign(tmp_p
     rig = tl.load(tmp_path / "rig")
     for experiment in rig.experiments:
         experiment.data["tension_22"] -= experiment.data["tension_22"].mean()
-    assert list(pushing_cables(rig)) == []
+    assert list(pushing_cables(rig, rig.system())) == []
 
 
 @pytest.mark.parametrize("factor", [2.0, 0.5, -1.0, 1000.0, 0.001])

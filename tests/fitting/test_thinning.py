@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.fitting.noise import noise_of
 from tendonlab.fitting.thinning import local_parabolas, thinned
 from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.records import Experiment
@@ -159,3 +160,16 @@ def test_a_log_with_a_gap_or_of_100_hz_stays_as_it_is(rig):
 def test_noise_is_measured_in_the_log_unless_stated(rig):
     angle = rig["run"].data["joint_angle"].to_numpy()
     assert white_noise_sd(angle) == pytest.approx(NOISE, rel=0.1)
+
+
+@pytest.mark.parametrize("stated", [None, NOISE])
+def test_rounding_falls_with_the_noise(rig, stated):
+    """An encoder whose rounding is all its noise keeps a stated noise: differences of few samples hold motion."""
+    step = 1e-3
+    encoder = replace(rig.signals["joint_angle"], noise_sd=stated, resolution=step)
+    angle = step * np.round(rig["run"].data["joint_angle"] / step)
+    few, after = thin(replace(rig, signals={**rig.signals, "joint_angle": encoder}), joint_angle=angle)
+    gain = few.signals["joint_angle"].resolution / step
+    assert 0.2 < gain < 0.6
+    there = noise_of(few.signals["joint_angle"], [after.data["joint_angle"].to_numpy()])
+    assert there == pytest.approx(gain * np.hypot(step / np.sqrt(12.0), stated or 0.0), rel=1e-9)

@@ -75,6 +75,13 @@ def test_roles_are_read_from_the_tables() -> None:
     assert tl.system_info("bowden_pair").command is None
 
 
+@pytest.mark.parametrize("kind", tl.kinds())
+def test_a_command_has_a_gain(kind: str) -> None:
+    """So it may be logged as a current, a voltage or a number."""
+    info = tl.system_info(kind)
+    assert (info.command is None) == (info.with_role("command_gain") is None)
+
+
 def test_places_without_ports_share_the_motion_of_an_element() -> None:
     acts_on = {element.name: element.acts_on for element in INFO.elements}
     assert acts_on["load"] == acts_on["joint"] == "joint"

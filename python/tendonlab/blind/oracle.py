@@ -28,8 +28,11 @@ def tell(
     """Diagnose the cases that lack effects of the library once more, told which, into `out`/<id>; return `out`.
 
     Cases that have a report there are skipped. A case that fails leaves none. Raises ValueError where `cases` holds no
-    dataset, or where a truth is missing."""
+    dataset, where a truth is missing, or where `out` lies in the folder that holds the cases: these reports tell the
+    truth, and a diagnosis may run there."""
     sealed, cases, out = Path(sealed), Path(cases).resolve(), Path(out).resolve()
+    if cases.parent in out.parents:
+        raise ValueError(f"{out}: these reports tell the truth; expected a folder outside {cases.parent}")
     commands = {}
     for case in cases_in(cases):
         missing = truth_of(sealed, case.name)

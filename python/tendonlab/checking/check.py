@@ -38,7 +38,7 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     system = dataset.system() if system is None else require_system(system)
     marked = {} if system.info.steady else marks(dataset)
     found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
-    if pushing := list(pushing_cables(dataset)):  # all else is judged once these are corrected
+    if pushing := list(pushing_cables(dataset, system)):  # all else is judged once these are corrected
         found += pushing
     elif system.info.steady:
         notes.append(UNTIMED.format(kind=system.kind))

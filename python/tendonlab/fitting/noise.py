@@ -116,8 +116,9 @@ def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
     """Sd of the white noise of one output, from its records; see `sensor_noise`."""
     rounding = rounding_of(signal)
     smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
-    if signal.noise_sd:
-        return max(float(np.hypot(signal.noise_sd, rounding)), smallest)
+    stated = 0.0 if signal.noise_sd is None else float(np.hypot(signal.noise_sd, rounding))
+    if stated > 0.0:
+        return max(stated, smallest)
     return max(float(np.median([noise_sd(r) for r in records])), rounding, smallest) or 1.0
 
 
