@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.answer import answer
-from tendonlab.diagnosis.answer.answer import _gap, _invisible, _levels, _next, _steps
+from tendonlab.diagnosis.answer.answer import _invisible, _levels, _next
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.drift import Drift
 
 FLOOR: Any = SimpleNamespace(rms=np.array([0.5, np.nan, 2.0]), repeated=False)
@@ -52,14 +53,14 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
 
 
 def test_the_gap_lists_floor_and_error_of_each_stage() -> None:
-    found = _gap(CASE, {"nominal": replayed(3.0, np.nan, 4.0), "refitted": replayed(1.0, np.nan, 2.0)}, FLOOR)
-    assert found == {
+    steps = (replayed(3.0, np.nan, 4.0), replayed(1.0, np.nan, 2.0))
+    judged = Judged(CASE, FLOOR, {"nominal": steps[0], "refitted": steps[1]}, steps, (0, 1), {})
+    assert judged.gap() == {
         "a": {"noise_floor": 0.5, "nominal": pytest.approx(3.0), "refitted": pytest.approx(1.0)},
         "c": {"noise_floor": 2.0, "nominal": pytest.approx(4.0), "refitted": pytest.approx(2.0)},
     }
     search: Any = SimpleNamespace(path=[SimpleNamespace(added=()), SimpleNamespace(added=("x",))])
-    steps = _steps(CASE, search, [replayed(3.0, np.nan, 4.0), replayed(1.0, np.nan, 2.0)])["steps"]
-    assert steps == [
+    assert judged.table_of_steps(search) == [
         {"effects": [], "rms": {"a": pytest.approx(3.0), "c": pytest.approx(4.0)}},
         {"effects": ["x"], "rms": {"a": pytest.approx(1.0), "c": pytest.approx(2.0)}},
     ]
@@ -85,13 +86,14 @@ def test_an_effect_is_invisible_that_neither_gains_nor_could_gain_a_nat() -> Non
 def test_the_next_experiment_separates_the_first_effect_from_its_likeliest_rival_if_that_is_open(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(answer, "advise", lambda case, floor, first, second: [(first, second)])
+    monkeypatch.setattr(answer, "advise", lambda case, loop, floor, first, second: [(first, second)])
     own, rival, weak = (SimpleNamespace(effect=name, fitted=name) for name in ("own", "rival", "weak"))
 
     def proposed(accepted: Any, **share: float) -> Any:
         probability = {"own": 0.9, "rival": share["rival"], "weak": 0.001, None: share["none"]}
         contest = SimpleNamespace(accepted=accepted, trials=(own, weak, rival), probability=probability)
-        return _next(CASE, FLOOR, SimpleNamespace(rounds=[contest], tuned="tuned"))  # type: ignore[arg-type]
+        loop: Any = None
+        return _next(CASE, loop, FLOOR, SimpleNamespace(rounds=[contest], tuned="tuned"))  # type: ignore[arg-type]
 
     assert proposed(own, rival=0.06, none=0.03) == [("own", "rival")]
     assert proposed(own, rival=0.03, none=0.06) == [("own", "tuned")]

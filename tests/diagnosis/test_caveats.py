@@ -10,6 +10,7 @@ import pytest
 
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.noise import Floor
@@ -43,7 +44,7 @@ def said(
         prepared=[SimpleNamespace(measured=swing * np.sqrt(2.0) * np.sin(time)[None])],
     )
     stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
-    return caveats(case, final, stages, FLOOR, [0], drift, outlier)
+    return caveats(final, Judged(case, FLOOR, stages, (), (0,), {}), drift, outlier)
 
 
 def _of(error: float) -> Replayed:

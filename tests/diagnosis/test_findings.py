@@ -30,8 +30,8 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     def of(rounds: list[Any], probability: dict[str, float], selected: tuple[str, ...] = ()) -> Any:
         nothing: Any = None
-        search: Any = SimpleNamespace(rounds=rounds, selected=selected)
-        return findings(nothing, search, probability, nothing, [], 0)
+        search: Any = SimpleNamespace(rounds=rounds, selected=selected, fitter=nothing)
+        return findings(search, probability, nothing, nothing, 0)
 
     return of
 
@@ -87,6 +87,6 @@ def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(mo
         system=system, free=[SimpleNamespace(name="joint_level")], value=lambda _: (0.3, (0.2, 0.5))
     )
     fitter: Any = SimpleNamespace(case=None, floor=None)
-    refitted: Any = None
-    found = _numbers(fitter, Trial("joint:a", fitted, 9.0, 9.0, 0.0), refitted, [], 0)
+    judged: Any = SimpleNamespace(case=None, experiments=())
+    found = _numbers(fitter, Trial("joint:a", fitted, 9.0, 9.0, 0.0), judged, judged, 0)
     assert found == {"parameters": {"level": {"value": 0.3, "ci95": [0.2, 0.5], "unit": "N*m"}}}

@@ -31,16 +31,20 @@ def case(kind: str = "injection", controller: Any = None, **changes: Any) -> Any
     )
 
 
+def driven(of: Any) -> Loop | None:
+    return _loop(of, of.replay)
+
+
 def test_a_rig_is_driven_by_the_loop_of_its_replay() -> None:
     """A cascade multiplies its gains; without gains, or without a loop, a rig is not driven."""
     cascade, pd = SimpleNamespace(kind="cascade"), SimpleNamespace(kind="pd")
-    assert _loop(case()) == Loop(3.0, 0.5, "joint_angle")
-    assert _loop(case("controller", pd)) == Loop(3.0, 0.5, "joint_angle")
-    assert _loop(case("controller", cascade)) == Loop(1.5, 0.5, "joint_angle")
-    assert _loop(case("injection", cascade)) == Loop(3.0, 0.5, "joint_angle")
+    assert driven(case()) == Loop(3.0, 0.5, "joint_angle")
+    assert driven(case("controller", pd)) == Loop(3.0, 0.5, "joint_angle")
+    assert driven(case("controller", cascade)) == Loop(1.5, 0.5, "joint_angle")
+    assert driven(case("injection", cascade)) == Loop(3.0, 0.5, "joint_angle")
     for missing in ({"kind": "free"}, {"kp": None}, {"kd": None}, {"output": None}):
         kind = missing.pop("kind", "injection") or ""
-        assert _loop(case(kind, **missing)) is None
+        assert driven(case(kind, **missing)) is None
 
 
 def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -59,7 +63,7 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     monkeypatch.setattr(next_experiments, "_separation", separation)
     floor: Any = None
     first, second = (SimpleNamespace(added=added) for added in (("x", "both"), ("both", "y")))
-    found = advise(case(), floor, first, second)  # type: ignore[arg-type]
+    found = advise(case(), case().replay, floor, first, second)  # type: ignore[arg-type]
     assert [(row["description"], row["expected_gain"]) for row in found] == [("e", 900.0), ("c", 40.0), ("a", 12.3)]
     assert found[0]["separates"] == ["x", "y"]
     assert [row.get("add") for row in found] == [{"gravity_torque": 2.0}, None, None]
@@ -68,7 +72,7 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     assert reference["angle (deg)"].iloc[0] == pytest.approx(np.degrees(1.0))  # as the logs measure it
     assert reference["angle (deg)"].iloc[-1] == pytest.approx(np.degrees(path[-1]))
     assert np.diff(reference["angle (deg)"])[0] < 1e-3 * np.degrees(1 / RATE)  # from rest
-    assert advise(case("free"), floor, first, second) == []  # type: ignore[arg-type]
+    assert advise(case(), case("free").replay, floor, first, second) == []  # type: ignore[arg-type]
 
 
 @pytest.fixture
@@ -89,7 +93,7 @@ def test_a_motion_separates_by_what_no_parameter_can_imitate(fitter: Fitter, nom
     """Half the least squares of what the other model leaves more, its posterior as prior, its own unknowns integrated
     out: by dense matrices."""
     case, other = fitter.case, damped(fitter, 3.0)
-    loop = _loop(case)
+    loop = driven(case)
     assert loop is not None
     found = _gain(case, fitter.floor, nominal, other, short, loop)
 
@@ -109,7 +113,7 @@ def test_a_motion_separates_no_model_from_itself_and_promises_what_holds_for_eit
     fitter: Fitter, nominal: Fitted, short: Motion
 ) -> None:
     case, other = fitter.case, damped(fitter, 3.0)
-    loop = _loop(case)
+    loop = driven(case)
     assert loop is not None
     assert _gain(case, fitter.floor, nominal, nominal, short, loop) == pytest.approx(0.0, abs=1e-9)
     both = [_gain(case, fitter.floor, a, b, short, loop) for a, b in ((nominal, other), (other, nominal))]
@@ -120,7 +124,7 @@ def test_a_motion_is_logged_as_the_rig_logs(fitter: Fitter, nominal: Fitted, sho
     """With the columns and at the sampling rate of the logs; its command alone makes the motion again."""
     case = fitter.case
     like = case.experiments[case.train[0]]
-    loop = _loop(case)
+    loop = driven(case)
     assert loop is not None
     made = _logged(case, nominal, short, loop)
     assert list(made.data.columns) == list(like.data.columns)

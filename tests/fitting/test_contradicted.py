@@ -1,16 +1,21 @@
-"""A stated controller that does not command what was logged is not believed."""
+"""A stated controller that does not command what was logged is not believed; one whose command was logged is not
+simulated where that saves steps."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
 from tendonlab.data import Dataset
-from tendonlab.fitting.replay import choose_replay, missed_command
+from tendonlab.fitting import thinning
+from tendonlab.fitting.replay import choose_replay, missed_command, opened
+from tendonlab.fitting.thinning import thinned
+from tendonlab.simulation.records import Experiment
 
 
 @pytest.fixture(scope="module")
@@ -59,3 +64,49 @@ def test_noise_is_fed_back_where_the_controller_has_a_clock(rig: Dataset, sample
     replay = choose_replay(given, given.system())
     assert replay.kind == "controller"
     assert replay.feeds_noise == replay.carries_noise == (sample_time is None)
+
+
+def at_every(rig: Dataset, num: int, *, means: bool) -> Dataset:
+    """The rig logged `num` times as slowly, its command as means between the samples or picked out at them."""
+
+    def slower(e: Experiment) -> Experiment:
+        data = e.data.iloc[::num].copy()
+        if means:
+            size = num * (len(e.data) // num)
+            held = e.data["motor_torque"].to_numpy()[:size].reshape(-1, num).mean(axis=1)
+            data["motor_torque"] = np.append(held, e.data["motor_torque"].iloc[size:].mean())[: len(data)]
+        holds = {**e.holds, "reference_angle": False}
+        return replace(e, data=data.iloc[: len(e.data) // num], holds=holds)
+
+    return replace(rig, experiments=tuple(slower(e) for e in rig.experiments))
+
+
+def test_a_logged_command_stands_in_for_the_controller(rig: Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
+    """But where noise shakes the rig that thinning would lose: only the controller makes that again."""
+    assert opened(rig, rig.system()).controller is None
+    assert thinned(rig) is rig
+    monkeypatch.setattr(thinning, "SHOOK", 0.15)
+    few = thinned(rig)
+    assert few.controller is None
+    assert len(few.experiments[0].data) <= 0.2 * len(rig.experiments[0].data)
+    assert choose_replay(few, rig.system()).kind == "injection"
+
+
+@pytest.mark.parametrize(("name", "factor"), [("kd", 0.0), ("kp", 1.5)])
+def test_a_contradicted_one_stays(rig: Dataset, name: str, factor: float) -> None:
+    wrong = stated(rig, **{name: factor * getattr(rig.controller, name)})
+    assert opened(wrong, wrong.system()) is wrong is thinned(wrong)
+
+
+@pytest.mark.parametrize(("means", "stands_in"), [(True, True), (False, False)])
+def test_a_slow_log_stands_in_if_it_holds_means(rig: Dataset, means: bool, stands_in: bool) -> None:
+    slow = at_every(rig, 5, means=means)
+    assert (opened(slow, slow.system()).controller is None) == stands_in
+    assert (thinned(slow).controller is None) == stands_in  # nothing to thin, but ticks to save
+
+
+def test_a_controller_stays_where_a_run_lacks_its_command_or_the_motor(rig: Dataset) -> None:
+    first, *others = rig.experiments
+    for name in ("motor_torque", "motor_angle"):
+        lacks = replace(rig, experiments=(replace(first, data=first.data.drop(columns=name)), *others))
+        assert opened(lacks, lacks.system()) is lacks

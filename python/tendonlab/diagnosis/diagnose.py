@@ -58,9 +58,11 @@ def diagnose(
         return data_fault(dataset, used, found, seed=seed, seconds=time.monotonic() - began)
     if any(finding.problem == "outliers" for finding in found.findings):
         dataset = without_outliers(dataset)
-    dataset = thinned(dataset, system)
+    system = dataset.system() if system is None else system
+    few = thinned(dataset, system)
+    loop = make_case(dataset, system) if few.controller is not dataset.controller else None
     with open_workshop(names, progress=progress) as shop:
-        case = make_case(dataset, system)
+        case = make_case(few, system)
         rough = rough_fit(case, shop.cancel)
         fitter = under_noise_floor(case, rough, shop.pool, shop.cancel)
         initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
@@ -71,7 +73,7 @@ def diagnose(
         fitter, tuned = renewed(fitter, tuned, shop.pool)
         search = confirmed(select_effects(fitter, tuned, shop), shop)
         log.info("selected %s", search.selected)
-        why = answer(search, nominal, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
+        why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
     return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
 

@@ -9,7 +9,7 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of
-from tendonlab.simulation.command import command_of, fed_noise
+from tendonlab.simulation.command import command_of, fed_noise, mean_command_of
 from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.records import Controller, Experiment
 from tendonlab.simulation.signals import spline_near
@@ -19,6 +19,7 @@ UNEXPLAINED, SHOWN = 0.1, 10.0  # share of the effort that no model explains, an
 SAME_CLOCK = 0.05  # of the controller's period, by which the logs' may differ for the two to be compared
 DAMPING = 1.0  # ratio of the loop: critical
 CONTRADICTED = 0.1  # of the rms command, by which a stated controller may miss what was logged; right ones miss 0.014
+MEANS = 0.05  # of the rms command, by which a log may miss the means of a faster controller; means miss 0.001 to 0.04
 RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection; at most twice that,
 NEEDED = 25.0  # rad/s: where logs are so slow that this is not reached, what no model explains would add up
 
@@ -58,6 +59,28 @@ def choose_replay(dataset: Dataset, system: System) -> Replay:
     return Replay("injection", float(inertia * omega**2), float(2.0 * DAMPING * inertia * omega), first)
 
 
+def opened(dataset: Dataset, system: System) -> Dataset:
+    """The dataset without its controller, where every log holds what the controller commanded, at each tick or as means
+    between its samples: the logged command then tells the same, and a simulation of it needs no step for each tick.
+    Else the dataset itself."""
+    controller, motor = dataset.controller, next((s.name for s in system.info.outputs if s.axis == 0), None)
+    if controller is None or motor is None or not system.info.commanded:
+        return dataset
+    command = system.info.inputs[0].name
+    lost = [_lost(controller, e, command) if _holds(e, motor) else np.inf for e in dataset]
+    return replace(dataset, controller=None) if np.median(lost) <= 1.0 and np.isfinite(lost).all() else dataset
+
+
+def _lost(controller: Controller, experiment: Experiment, command: str) -> float:
+    """How much of what the controller commanded a log does not hold, over the most that is allowed."""
+    missed = _missed(controller, experiment, command)
+    return _misses_means(controller, experiment, command) / MEANS if missed is None else missed / CONTRADICTED
+
+
+def _holds(experiment: Experiment, name: str) -> bool:
+    return name in experiment.data.columns and int(experiment.data[name].count()) > 1
+
+
 def missed_command(dataset: Dataset, system: System) -> float:
     """How far the stated controller's command is from the logged one: the rms of the difference over that of the
     command, the median over the training experiments. In continuous time of what is smooth in both: the noise that the
@@ -73,14 +96,10 @@ def missed_command(dataset: Dataset, system: System) -> float:
 
 def _missed(controller: Controller, experiment: Experiment, command: str) -> float | None:
     """The same in one experiment; None where nothing can be compared."""
-    wanted = [command, controller.measured, controller.reference, *({controller.disturbance} - {None})]
-    data = experiment.data
-    if not set(wanted) <= set(data.columns) or not np.isfinite(data[wanted].to_numpy(dtype=float)).all(axis=1).any():
-        return None
+    filled = _compared(controller, experiment, command)
     steps = np.abs(np.diff(experiment.time) / controller.sample_time - 1.0) if controller.sample_time > 0 else 0.0
-    if np.median(steps) > SAME_CLOCK:
+    if filled is None or np.median(steps) > SAME_CLOCK:
         return None
-    filled = replace(experiment, data=data.interpolate(method="index", limit_direction="both"))
     reading = filled.data[controller.measured].to_numpy(dtype=float)
     logged = filled.data[command].to_numpy(dtype=float)
     is_continuous = controller.sample_time <= 0
@@ -88,6 +107,33 @@ def _missed(controller: Controller, experiment: Experiment, command: str) -> flo
     missed = logged - command_of(controller, filled, read)
     if is_continuous:
         missed = _smooth(experiment.time, missed)
+    return _share(missed, logged)
+
+
+def _misses_means(controller: Controller, experiment: Experiment, command: str) -> float:
+    """The same against means from sample to sample; inf of a log that is no slower than the controller's clock."""
+    filled = _compared(controller, experiment, command)
+    if filled is None or not is_slower(experiment, controller):
+        return np.inf
+    reading, logged = (filled.data[name].to_numpy(dtype=float) for name in (controller.measured, command))
+    return _share(logged[:-1] - mean_command_of(controller, filled, reading), logged)
+
+
+def is_slower(experiment: Experiment, controller: Controller) -> bool:
+    """Whether a log has fewer samples than the clock of its controller has ticks."""
+    return bool(0.0 < (1.0 + SAME_CLOCK) * controller.sample_time < np.median(np.diff(experiment.time)))
+
+
+def _compared(controller: Controller, experiment: Experiment, command: str) -> Experiment | None:
+    """The experiment without gaps, where it holds all that the controller reads and commands."""
+    wanted = [command, controller.measured, controller.reference, *({controller.disturbance} - {None})]
+    data = experiment.data
+    if not set(wanted) <= set(data.columns) or not np.isfinite(data[wanted].to_numpy(dtype=float)).all(axis=1).any():
+        return None
+    return replace(experiment, data=data.interpolate(method="index", limit_direction="both"))
+
+
+def _share(missed: np.ndarray, logged: np.ndarray) -> float:
     return float(np.sqrt(np.mean(missed**2) / max(np.mean(logged**2), 1e-300)))
 
 

@@ -13,6 +13,7 @@ import pandas as pd
 
 from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of, without_rounding
+from tendonlab.fitting.replay import is_slower, opened
 from tendonlab.simulation.catalog import InputInfo
 from tendonlab.simulation.prepare import is_held
 from tendonlab.simulation.records import Experiment, SignalSpec
@@ -21,6 +22,7 @@ from tendonlab.simulation.system import System
 RATE = 100.0  # Hz: logs are thinned to no less
 LOST = 1.15  # residual of the parabolas over the sensors' noise: more, and they would smooth motion away
 SHAKES = 0.2  # rms of an input's noise over that of the input: more shakes a rig, which eases its friction
+SHOOK = 0.05  # the same where the known controller makes that noise again
 THINNED = (
     "The logs were thinned from {:.0f} to {:.0f} samples per second; errors and noise floors are those of the smoothed "
     "signals."
@@ -38,27 +40,30 @@ class Thinned:
 
 
 def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
-    """The dataset with as few samples as hold what the logs say, at least `RATE` a second. As it is where a controller
-    is known, whose every tick counts; where nothing moves by an equation, so that there is no step to save; where a log
-    has gaps; or where any smoothing would take motion away. `system`: default the dataset's own."""
+    """The dataset with as few samples as hold what the logs say, at least `RATE` a second; without its controller where
+    that saves steps, and the logs hold the command. As it is where the logs do not hold the command of a known
+    controller, whose every tick counts; where nothing moves by an equation, so that there is no step to save; where a
+    log has gaps; or where any smoothing would take motion away. `system`: default the dataset's own."""
     system = dataset.system() if system is None else system
     steps = [float(np.median(np.diff(e.time))) for e in dataset if len(e.time) > 1]
+    closed, dataset = dataset, opened(dataset, system)
     if dataset.controller is not None or system.info.sampled or not steps or any(_has_gaps(e.time) for e in dataset):
-        return dataset
+        return closed
     outputs = [s.name for s in system.info.outputs if s.name in dataset.signals]
     records = {name: [(e.time, _column(e, name)) for e in dataset if name in e.data.columns] for name in outputs}
     noise = {name: noise_of(dataset.signals[name], [row for _, row in of]) for name, of in records.items() if of}
-    factor = int(1.0 / (RATE * max(steps)) + 1e-6)
+    factor, most = int(1.0 / (RATE * max(steps)) + 1e-6), SHAKES if closed.controller is None else SHOOK
     while factor > 1:
         smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
-        calm = all(_is_calm(e, given, factor) for e in dataset for given in _inputs_of(e, system))
-        if calm and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
+        lost = max((_lost_of(e, given, factor) for e in dataset for given in _inputs_of(e, system)), default=0.0)
+        if lost <= most and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
             signals = {name: _smoothed(dataset.signals[name], noise[name], _gain(smooth[name])) for name in noise}
             few = tuple(_thin(e, system, list(noise), factor) for e in dataset)
             said = (*dataset.warnings, THINNED.format(1.0 / max(steps), 1.0 / (max(steps) * factor)))
             return replace(dataset, signals={**dataset.signals, **signals}, experiments=few, warnings=said)
         factor //= 2
-    return dataset
+    ticks = closed.controller is not None and all(is_slower(e, closed.controller) for e in dataset)
+    return dataset if ticks else closed
 
 
 def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinned:
@@ -97,11 +102,11 @@ def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:
     return bool(len(removed)) and float(np.sqrt(np.mean(np.square(removed)))) < LOST * noise
 
 
-def _is_calm(experiment: Experiment, given: InputInfo, factor: int) -> bool:
-    """Whether next to nothing of an input is lost between its means."""
+def _lost_of(experiment: Experiment, given: InputInfo, factor: int) -> float:
+    """Rms of what is lost of an input between its means, over that of the input."""
     values = _column(experiment, given.name)
     means = np.interp(experiment.time, *_middles(experiment.time[::factor], _means(experiment, given, factor)))
-    return float(np.sqrt(np.mean(np.square(values - means)))) <= SHAKES * float(np.sqrt(np.mean(np.square(values))))
+    return float(np.sqrt(np.mean(np.square(values - means)) / max(np.mean(np.square(values)), 1e-300)))
 
 
 def _middles(time: np.ndarray, means: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -39,6 +39,35 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
     return np.asarray(command + _disturbance(controller, experiment, now if step > 0 else time))
 
 
+def mean_command_of(controller: Controller, experiment: Experiment, measured: np.ndarray) -> np.ndarray:
+    """The mean command of `controller` from each sample of `experiment` to the next, shape (n - 1,), where its clock
+    ticks several times between them and the output that it sees is `measured`, shape (n,)."""
+    time, step = experiment.time, np.diff(experiment.time)
+    reference = experiment.data[controller.reference].to_numpy(dtype=float)
+    read, change = _over_ticks(time, measured, controller.sample_time)
+    if experiment.holds.get(controller.reference, False):
+        wanted, moved = reference[:-1], np.diff(reference, prepend=reference[0])[:-1]
+    else:
+        wanted, moved = _over_ticks(time, reference, controller.sample_time)
+    cascade = controller.kind == "cascade"
+    proportional = controller.kd * controller.kp if cascade else controller.kp
+    weight = 1.0 if not cascade and controller.derivative_on == "error" else 0.0
+    command = proportional * (wanted - read) + controller.kd * (weight * moved - change) / step
+    disturbance = _disturbance(controller, experiment, time[:-1] + 0.5 * step)
+    return np.asarray(np.clip(command, -controller.limit, controller.limit) + disturbance)
+
+
+def _over_ticks(time: np.ndarray, values: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
+    """Mean of what is read at the ticks from each sample to the next, and the sum of its backward differences there."""
+    from scipy.interpolate import CubicSpline
+
+    curve = CubicSpline(time, values)
+    means = np.diff(curve.antiderivative()(time - 0.5 * period)) / np.diff(
+        time
+    )  # each tick stands for what is around it
+    return means, np.diff(curve(time - period))
+
+
 def fed_noise(controller: Controller, experiment: Experiment, command: str) -> tuple[np.ndarray, np.ndarray] | None:
     """Ticks of the clock of `controller`, and what was added to its command there: the logged `command` less that of
     the smoothed reading, 0 where a sample is missing. So noise that the sensor feeds back shakes a simulated rig as it

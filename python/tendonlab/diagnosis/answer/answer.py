@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from tendonlab.diagnosis import confusions
@@ -18,6 +17,7 @@ from tendonlab.diagnosis.answer.explore import explore
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun, find_outlier_run
 from tendonlab.diagnosis.answer.overlays import overlays
@@ -26,38 +26,38 @@ from tendonlab.diagnosis.discrepancy import followed, scattered
 from tendonlab.diagnosis.drift import Drift, over_session
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.simulation.prepare import Replay
 
 OPEN = 0.02  # probability from which a rival of the first effect is worth an experiment
+Seconds = Callable[[], float]  # since the diagnosis began
 MOST_RIVALS = 3  # an exact twin or two may come before the first rival that a motion can tell apart
 
 
 def answer(
-    search: Search, nominal: Fitted, *, library: Sequence[str] | None, seed: int, seconds: Callable[[], float]
+    search: Search, nominal: Fitted, loop: Case | None, *, library: Sequence[str] | None, seed: int, seconds: Seconds
 ) -> Diagnosis:
     """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone;
-    `library`: names of the effects that were asked for (None: all)."""
-    fitter, case, floor = search.fitter, search.fitter.case, search.fitter.floor
-    everywhere = case.test or case.train
-    models = [[case.system] * len(everywhere), *(heldout.models(case, model, everywhere) for model in search.path)]
-    (untouched, *steps), judged, failed = heldout.replay_all(case, models, everywhere)
-    if search.selected:  # an effect that was established stands out of the floor
-        floor = floor.reached_by(heldout.rms(steps[-1]))
-    stages = {"nominal": untouched, "refitted": steps[0], "with_effect": steps[-1]}
+    `loop`: the same logs with their controller, where models were weighed without: the errors that are told are those
+    of its closed loop; `library`: names of the effects that were asked for (None: all)."""
+    fitter, case = search.fitter, search.fitter.case
+    weighed = Judged.of(case, fitter.floor, search)
+    floor, judged, stages = weighed.floor, weighed.experiments, weighed.stages
+    shown, lost = _shown(weighed, loop, search)
     drift = over_session(case, search.final)
     outlier = None if search.selected else find_outlier_run(case, search.tuned, floor)
     near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
     levels = _levels(search, nominal, stages, near, floor, drift, outlier)
-    raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=floor.repeated)
+    raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=fitter.floor.repeated)
     verdict = calibration.applied(raw)
-    held_out = _per_experiment(case, stages, floor, judged)
-    how = notes.details(case, floor, nominal, search, drift) | _steps(case, search, steps)
+    how = notes.details(shown.case, floor, nominal, search, drift) | {"steps": shown.table_of_steps(search)}
     records = where.PortRecords(case, stages["with_effect"], judged)
     located = _where(case, stages["refitted"], floor, records, verdict)
-    proposed, references = _what_next(case, floor, search, verdict, located["regimes"])
+    proposed, references = _what_next(case, shown.case.replay, floor, search, verdict, located["regimes"])
     return Diagnosis(
         dataset=case.dataset.name,
         system=case.system.kind,
@@ -65,36 +65,46 @@ def answer(
         verdict=verdict.verdict,
         verdict_probability=verdict.probability,
         calibrated=calibration.holds(case.system.kind, runs=len(case.train)),
-        replay=notes.replay(case),
-        gap=_gap(case, stages, floor),
+        replay=notes.replay(shown.case),
+        gap=shown.gap(),
         where=located,
-        effects=findings(fitter, search, verdict.effects, stages["refitted"], judged, seed),
+        effects=findings(search, verdict.effects, weighed, shown, seed),
         sets=tuple(verdict.sets),
         selected=search.selected,
         explained=levels.explained,
         indistinguishable=tuple(tuple(group) for group in verdict.indistinguishable),
         invisible=_invisible(search),
-        shrinkage=_shrinkage(case, stages, floor, judged, seed),
+        shrinkage=shown.shrinkage(seed),
         next_experiments=proposed,
         references=references,
-        caveats=caveats(case, search.final, stages, floor, judged, drift, outlier),
+        caveats=caveats(search.final, shown, drift, outlier),
         warnings=(
-            *notes.warnings(case, floor, search),
-            *notes.not_simulated(failed),
+            *notes.warnings(shown.case, floor, search),
+            *lost,
             *notes.not_asked(case, search, library),
-            *notes.not_improved(held_out, search.selected),
-            *notes.allowed_more(case, stages["with_effect"], near["with_effect"], floor, judged),
+            *notes.on_the_held_out(weighed, shown, near, search.selected),
             *notes.no_noise(levels),
         ),
         units=notes.units(case),
-        overlays=overlays(case, stages, floor, judged),
+        overlays=overlays(shown),
         where_map=where.maps(case, stages["refitted"], stages["with_effect"], floor, records),
-        held_out=held_out,
-        table=inverse_dynamics(case, [model.system for model in search.path], judged),
+        held_out=shown.per_experiment(),
+        table=inverse_dynamics(shown.case, [model.system for model in search.path], shown.experiments),
         split={name: [case.experiments[i].name for i in of] for name, of in _splits(case)},
-        details=how | {"evidence": raw.evidence},
+        details=how | notes.weighed(weighed, shown) | {"evidence": raw.evidence},
         seconds=seconds(),
     )
+
+
+def _shown(weighed: Judged, loop: Case | None, search: Search) -> tuple[Judged, list[str]]:
+    """What a reader sees: the models in the closed loop of the rig, where it is known; and a warning where they fail
+    there."""
+    if loop is None:
+        return weighed, []
+    try:
+        return Judged.in_loop(loop, search), []
+    except NumericalError as error:
+        return weighed, [f"Errors are those of an injection. In the closed loop {error}."]
 
 
 def _where(
@@ -139,33 +149,6 @@ def _splits(case: Case) -> list[tuple[str, Sequence[int]]]:
     return [("train", case.train), ("test", case.test)]
 
 
-def _gap(case: Case, stages: dict[str, Replayed], floor: Floor) -> dict[str, dict[str, float]]:
-    errors = {stage: heldout.rms(replayed) for stage, replayed in stages.items()}
-    return {
-        case.outputs[c]: {"noise_floor": float(floor.rms[c]), **{stage: float(e[c]) for stage, e in errors.items()}}
-        for c in case.measured
-    }
-
-
-def _shrinkage(
-    case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int], seed: int
-) -> dict[str, dict[str, Any]]:
-    rng = np.random.default_rng(seed)
-    return {
-        f"from_{stage}": heldout.shrinkage(case, stages[stage], stages["with_effect"], floor, judged, rng)
-        for stage in ("nominal", "refitted")
-    }
-
-
-def _steps(case: Case, search: Search, replayed: Sequence[Replayed]) -> dict[str, Any]:
-    """Held-out rms of every output after the refit and after each effect that was added, as `steps`."""
-    steps = [
-        {"effects": list(model.added), "rms": {case.outputs[c]: float(heldout.rms(run)[c]) for c in case.measured}}
-        for model, run in zip(search.path, replayed, strict=True)
-    ]
-    return {"steps": steps}
-
-
 def _invisible(search: Search) -> tuple[str, ...]:
     """Effects that leave no trace in these data; of one that could not be simulated nothing is known."""
     screened = search.rounds[0].screened if search.rounds else ()
@@ -173,22 +156,27 @@ def _invisible(search: Search) -> tuple[str, ...]:
     return tuple(s.effect for s in faint if s.effect not in search.selected)
 
 
-def _next(case: Case, floor: Floor, search: Search) -> list[dict[str, Any]]:
+def _next(case: Case, loop: Replay, floor: Floor, search: Search) -> list[dict[str, Any]]:
     """Between the first effect and the likeliest of what is still open in its place that a motion separates from it."""
     if not search.rounds or (own := search.rounds[0].accepted) is None:
         return []
     share = search.rounds[0].probability
     rivals = [(share[t.effect], t.fitted) for t in search.rounds[0].trials if t is not own]
     likeliest = sorted([*rivals, (share[None], search.tuned)], key=lambda pair: -pair[0])[:MOST_RIVALS]
-    proposals = (advise(case, floor, own.fitted, other) for probability, other in likeliest if probability > OPEN)
+    proposals = (advise(case, loop, floor, own.fitted, other) for probability, other in likeliest if probability > OPEN)
     return next(filter(None, proposals), [])
 
 
 def _what_next(
-    case: Case, floor: Floor, search: Search, verdict: Verdict, regimes: Sequence[Mapping[str, Any]]
+    case: Case,
+    loop: Replay,
+    floor: Floor,
+    search: Search,
+    verdict: Verdict,
+    regimes: Sequence[Mapping[str, Any]],
 ) -> tuple[tuple[dict[str, Any], ...], dict[str, pd.DataFrame]]:
     """The proposed experiments, best first, and the references of those that are motions, by name."""
-    motions, references = _numbered(_next(case, floor, search))
+    motions, references = _numbered(_next(case, loop, floor, search))
     is_unknown = verdict.verdict == "unknown_effect"
     kind = case.system.kind
     explored = explore(regimes, notes.units(case), kind, repeated=floor.repeated) if is_unknown else []
@@ -208,9 +196,3 @@ def _measurements(case: Case, ties: Sequence[Sequence[str]]) -> list[dict[str, A
         for group in ties
         for known in confusions.among(case.system.info, group)
     ]
-
-
-def _per_experiment(case: Case, stages: dict[str, Replayed], floor: Floor, judged: Sequence[int]) -> pd.DataFrame:
-    squares = {stage: [heldout.row_mean_squares(r) for r in run.residuals] for stage, run in stages.items()}
-    rows = {stage: [heldout.gap(s, floor.rms) for s in values] for stage, values in squares.items()}
-    return pd.DataFrame(rows, index=pd.Index([case.experiments[i].name for i in judged], name="experiment"))

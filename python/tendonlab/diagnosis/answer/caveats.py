@@ -9,6 +9,7 @@ import numpy as np
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.beliefs import pulled
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.judged import WORSE, Judged
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
@@ -18,25 +19,18 @@ from tendonlab.report.numbers import number, unit_text
 from tendonlab.report.words import capital, changed_friction, words
 
 PULLED = 4.0  # stated standard deviations from the stated value
-WORSE = 1.05  # ratio of held-out mean squares, above the floor, that is no accident of rounding
 
 
 def caveats(
-    case: Case,
-    final: Fitted,
-    stages: Mapping[str, Replayed],
-    floor: Floor,
-    judged: Sequence[int],
-    drift: Drift | None = None,
-    outlier: OutlierRun | None = None,
+    final: Fitted, shown: Judged, drift: Drift | None = None, outlier: OutlierRun | None = None
 ) -> tuple[str, ...]:
     """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal,
     friction that changed over the session, a run that differs from all others."""
     return (
-        *_pulled(case, final),
-        *_worse(stages, floor, final.added),
-        *_drowned(case, floor, judged),
-        *_drifted(case, drift),
+        *_pulled(shown.case, final),
+        *_worse(shown.stages, shown.floor, final.added),
+        *_drowned(shown.case, shown.floor, shown.experiments),
+        *_drifted(shown.case, drift),
         *_differs(outlier),
     )
 

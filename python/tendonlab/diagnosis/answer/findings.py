@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.errors import NumericalError
@@ -18,15 +19,11 @@ from tendonlab.report.diagnosis import EffectFinding
 
 
 def findings(
-    fitter: Fitter,
-    search: Search,
-    probability: Mapping[str, float],
-    refitted: Replayed,
-    judged: Sequence[int],
-    seed: int,
+    search: Search, probability: Mapping[str, float], weighed: Judged, shown: Judged, seed: int
 ) -> tuple[EffectFinding, ...]:
     """Every candidate considered, most probable first, of equally probable ones those that were selected; those that
-    were refitted with their numbers."""
+    were refitted with their numbers: what they gain where models were `weighed`, and how far they shrink the gap that
+    is `shown`."""
     screened = {s.effect: s for contest in reversed(search.rounds) for s in contest.screened}
     trials = _telling_trials(search)
     rows = []
@@ -37,7 +34,7 @@ def findings(
             extra = {"screened_gain": screened[name].gain, "visibility": screened[name].visibility}
         about: dict[str, Any] = {}
         if name in trials:
-            about = _numbers(fitter, trials[name], refitted, judged, seed)
+            about = _numbers(search.fitter, trials[name], weighed, shown, seed)
             extra |= _evidence(trials[name])
         rows.append(
             EffectFinding(effect=effect, element=element, probability=probability.get(name, 0.0), extra=extra, **about)
@@ -57,18 +54,22 @@ def _telling_trials(search: Search) -> dict[str, Trial]:
     return {name: trial for name, (_, trial) in chosen.items()}
 
 
-def _numbers(fitter: Fitter, trial: Trial, refitted: Replayed, judged: Sequence[int], seed: int) -> dict[str, Any]:
-    case, floor = fitter.case, fitter.floor
+def _numbers(fitter: Fitter, trial: Trial, weighed: Judged, shown: Judged, seed: int) -> dict[str, Any]:
+    about: dict[str, Any] = {"parameters": _parameters(trial)}
     try:
-        replayed = heldout.replay(case, heldout.models(case, trial.fitted, judged), judged)
+        replayed = _replayed(weighed, trial)
+        seen = replayed if shown.case is weighed.case else _replayed(shown, trial)
     except NumericalError:  # a candidate that the training experiments already speak against
-        return {"parameters": _parameters(trial)}
-    rng = np.random.default_rng(seed)
-    return {
-        "parameters": _parameters(trial),
-        "held_out_gain": heldout.predictive_gain(case, fitter.whitening, floor, refitted, replayed, judged),
-        "shrinkage": heldout.shrinkage(case, refitted, replayed, floor, judged, rng),
-    }
+        return about
+    of, refitted = weighed.case, weighed.stages["refitted"]
+    gain = heldout.predictive_gain(of, fitter.whitening, fitter.floor, refitted, replayed, weighed.experiments)
+    before, rng = shown.stages["refitted"], np.random.default_rng(seed)
+    shrinkage = heldout.shrinkage(shown.case, before, seen, shown.floor, shown.experiments, rng)
+    return about | {"held_out_gain": gain, "shrinkage": shrinkage}
+
+
+def _replayed(of: Judged, trial: Trial) -> Replayed:
+    return heldout.replay(of.case, heldout.models(of.case, trial.fitted, of.experiments), of.experiments)
 
 
 def _parameters(trial: Trial) -> dict[str, dict[str, Any]]:

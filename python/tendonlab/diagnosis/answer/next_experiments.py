@@ -17,7 +17,7 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, Marginal, solved
 from tendonlab.fitting.noise import Floor
 from tendonlab.fitting.problem import pose
-from tendonlab.simulation.prepare import prepare
+from tendonlab.simulation.prepare import Replay, prepare
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.signals import linear, smooth
 
@@ -33,10 +33,11 @@ class Loop:
     output: str
 
 
-def advise(case: Case, floor: Floor, first: Fitted, second: Fitted) -> list[dict[str, Any]]:
+def advise(case: Case, driven: Replay, floor: Floor, first: Fitted, second: Fitted) -> list[dict[str, Any]]:
     """Motions ranked by the nats that they are expected to bring between two explanations, best first, each with its
-    `reference`; empty where the rig cannot be driven in the simulator or nothing separates them."""
-    loop = _loop(case)
+    `reference`; `driven`: the loop in which the rig follows them. Empty where the rig cannot be driven in the simulator
+    or nothing separates them."""
+    loop = _loop(case, driven)
     if loop is None:
         return []
     found = []
@@ -61,8 +62,8 @@ def _reference(case: Case, motion: Motion, loop: Loop) -> pd.DataFrame:
     return pd.DataFrame({"t": instants(), spec.column: convert(eased(motion.path), unit=spec.si_unit, to=spec.unit)})
 
 
-def _loop(case: Case) -> Loop | None:
-    replay, controller = case.replay, case.system.controller
+def _loop(case: Case, replay: Replay) -> Loop | None:
+    controller = case.system.controller
     if replay.kind == "free" or replay.kp is None or replay.kd is None or replay.output is None:
         return None
     cascade = controller is not None and replay.kind == "controller" and controller.kind == "cascade"

@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, Levels
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import Drift
@@ -140,6 +143,16 @@ def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list
     return [f"Asked for and not tried: {', '.join(names)} ({reason})."] if names else []
 
 
+def on_the_held_out(weighed: Judged, shown: Judged, near: Mapping[str, Replayed], selected: Sequence[str]) -> list[str]:
+    """Warnings about single held-out experiments. `near`: the replays that the verdict counts."""
+    foretold, allowed = weighed.stages["with_effect"], near["with_effect"]
+    return [
+        *not_simulated(weighed.failed | shown.failed),
+        *not_improved(shown.per_experiment(), selected),
+        *allowed_more(weighed.case, foretold, allowed, weighed.floor, weighed.experiments),
+    ]
+
+
 def not_simulated(failed: Mapping[str, str]) -> list[str]:
     """A warning for each experiment that no judgement counts. `failed`: why it could not be simulated, by its name."""
     left_out = "is left out of the judgement, as it could not be simulated"
@@ -212,6 +225,14 @@ def replay(case: Case) -> dict[str, Any]:
     controller = case.system.controller
     cascade = case.replay.kind == "controller" and controller is not None and controller.kind == "cascade"
     return {**entry, "kp_unit": "1/s" if cascade else f"{command}/{angle}", "kd_unit": f"{command}*s/{angle}"}
+
+
+def weighed(by: Judged, shown: Judged) -> dict[str, Any]:
+    """How models were fitted and weighed, as `weighed_by`, where that is not how their errors are shown."""
+    if shown.case is by.case:
+        return {}
+    step = float(np.median(np.diff(by.case.experiments[by.case.train[0]].time)))
+    return {"weighed_by": replay(by.case) | {"samples_per_second": float(f"{1.0 / step:.4g}")}}
 
 
 def units(case: Case) -> dict[str, str]:

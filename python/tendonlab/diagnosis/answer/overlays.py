@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
-from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import Overlay
 
 
-def overlays(case: Case, stages: Mapping[str, Replayed], floor: Floor, judged: Sequence[int]) -> tuple[Overlay, ...]:
-    """The experiments `judged`, the one on which the refitted simulator is worst first, then as they were logged."""
-    scale = floor.rms[case.measured, None]
-    squares = [float(np.nanmean(np.square(r[case.measured] / scale))) for r in stages["refitted"].residuals]
+def overlays(of: Judged) -> tuple[Overlay, ...]:
+    """The experiments that judge, the one on which the refitted simulator is worst first, then as they were logged."""
+    measured = of.case.measured
+    scale = of.floor.rms[measured, None]
+    squares = [float(np.nanmean(np.square(r[measured] / scale))) for r in of.stages["refitted"].residuals]
     worst = int(np.argmax(squares))
-    order = [worst, *(k for k in range(len(judged)) if k != worst)]
-    return tuple(_overlay(case, {s: of.outputs[k] for s, of in stages.items()}, floor, judged[k]) for k in order)
+    order = [worst, *(k for k in range(len(of.experiments)) if k != worst)]
+    rows = ({stage: run.outputs[k] for stage, run in of.stages.items()} for k in order)
+    return tuple(_overlay(of.case, row, of.floor, of.experiments[k]) for k, row in zip(order, rows, strict=True))
 
 
 def _overlay(case: Case, predicted: Mapping[str, np.ndarray], floor: Floor, i: int) -> Overlay:

@@ -19,7 +19,7 @@ _CALIBRATED = {
 
 def computation(diagnosis: Diagnosis) -> list[Block]:
     """Settings by name, the error after each step, and the parameters of the last simulator."""
-    rows = [("Replay", _replay(diagnosis))]
+    rows = [("Replay", f"{_loop(diagnosis.replay)}. The same for every simulator compared."), *_weighed(diagnosis)]
     rows += [(title, ", ".join(diagnosis.split[key])) for key, title in _SPLITS.items() if diagnosis.split.get(key)]
     rows += [("Probabilities", _CALIBRATED[diagnosis.calibrated]), *_details(diagnosis)]
     run = f"tendonlab {version()}, seed {diagnosis.seed}, {numbers.number(diagnosis.seconds)} s"
@@ -29,23 +29,39 @@ def computation(diagnosis: Diagnosis) -> list[Block]:
 _SPLITS = {"train": "Fitted and chosen on", "test": "Held out"}
 
 
-def _replay(diagnosis: Diagnosis) -> str:
-    """The kind of replay, and its gains with their units."""
-    kind = str(diagnosis.replay["kind"])
+def _loop(replay: Mapping[str, Any]) -> str:
+    """The kind of a replay, and its gains with their units."""
+    kind = str(replay["kind"])
     gains = [
-        f"{name} = {numbers.number(value, 4)} {numbers.unit_text(str(diagnosis.replay.get(f'{name}_unit') or ''))}"
+        f"{name} = {numbers.number(value, 4)} {numbers.unit_text(str(replay.get(f'{name}_unit') or ''))}"
         for name in ("kp", "kd")
-        if (value := diagnosis.replay.get(name)) is not None
+        if (value := replay.get(name)) is not None
     ]
-    texts = [capital(REPLAYS.get(kind, words(kind))), *(gain.rstrip() for gain in gains)]
-    return f"{'; '.join(texts)}. The same for every simulator compared."
+    return "; ".join([capital(REPLAYS.get(kind, words(kind))), *(gain.rstrip() for gain in gains)])
+
+
+def _weighed(diagnosis: Diagnosis) -> list[tuple[str, str]]:
+    """How simulators were fitted and weighed, where that is not how their errors are shown."""
+    by = diagnosis.details.get("weighed_by")
+    if by is None:
+        return []
+    rate = numbers.number(by["samples_per_second"])
+    return [
+        ("Fits and probabilities", f"{_loop(by)}; {rate} samples per second. Errors are those of the replay above.")
+    ]
 
 
 def _details(diagnosis: Diagnosis) -> list[tuple[str, str]]:
     """The known entries of `details` with their units; all others as they are."""
     rows = []
     for key, value in diagnosis.details.items():
-        if key in ("parameters", "steps", "evidence", "drift"):  # said elsewhere, or only read by a calibration
+        if key in (
+            "parameters",
+            "steps",
+            "evidence",
+            "drift",
+            "weighed_by",
+        ):  # said elsewhere, or only read by a calibration
             continue
         if key == "run_to_run_friction":
             rows.append(("Friction from run to run", f"differs by {numbers.percent(value)} (standard deviation)"))
