@@ -72,6 +72,21 @@ def test_where_finer_steps_are_in_vain_the_loosest_of_the_best_is_taken(monkeypa
     assert fine_enough(case(measured=[0]), np.ones(1)).tolerance == TOLERANCES[1]
 
 
+@pytest.mark.parametrize(("tied", "taken"), [((0.30, 0.28, 0.27), 0), ((0.30, 0.15, 0.14), 1), ((0.60, 0.58, 0.57), 3)])
+def test_finer_steps_are_not_taken_where_an_experiment_hangs_on_a_tie(
+    tied: tuple[float, ...], taken: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether a part just comes to rest or just does not: its error stays until steps are very fine."""
+    errors = dict(zip(TOLERANCES, (*tied, 0.01, 0.001), strict=True))
+
+    def outputs(_: Any, tolerance: float) -> list[np.ndarray]:
+        return [tolerance * np.ones((1, 9)), errors.get(tolerance, 0.0) * np.ones((1, 9))]
+
+    monkeypatch.setattr(cases, "replace", replaced)
+    monkeypatch.setattr(cases, "_outputs", outputs)
+    assert fine_enough(case(measured=[0]), np.ones(1)).tolerance == TOLERANCES[taken]
+
+
 def test_the_reference_is_a_hundredth_of_the_finest_or_what_the_inputs_allow(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = []
 

@@ -24,6 +24,7 @@ ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer
 STIFFER = 10  # times the attempts of the simulator itself, where that is more; with derivatives it may need four times
 PATIENT = 300_000  # attempts that no simulator needs in an experiment, unless it is hopeless
 NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
+TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling error; and the share of the noise at most then
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
 START = 0.2  # s of the first measured part of an experiment, from which its initial state is estimated
@@ -247,24 +248,33 @@ def _judged(ready: Prepared, experiment: Experiment) -> Prepared:
 
 def fine_enough(case: Case, noise: np.ndarray) -> Case:
     """The case with the loosest tolerance at which the simulator's own error stays below a tenth of `noise`, of each
-    output; where none is fine enough, as beside a contact that falls to either side, the loosest that errs little more
-    than the best one."""
+    output; or below half of it in an experiment where finer steps would not lessen the error, as where a part just comes
+    to rest or just does not. Where none is fine enough, as beside a contact that falls to either side, the loosest that
+    errs little more than the best one."""
     reference, best = _finest(case)
 
-    def error(tolerance: float) -> float:
+    def error(tolerance: float) -> np.ndarray:
         outputs = _outputs(case, tolerance)
         rms = [np.sqrt(np.mean(np.square(a - b), axis=1)) for a, b in zip(outputs, best, strict=True)]
-        return float(np.max(np.array(rms) / noise[case.measured]))
+        return np.max(np.array(rms) / noise[case.measured], axis=1)
 
-    errors: list[float] = []
+    errors: list[np.ndarray] = []
     tried = [tolerance for tolerance in TOLERANCES if tolerance > reference] or [reference]
-    for tolerance in tried:
+    for k, tolerance in enumerate(tried):
         errors.append(error(tolerance))
-        if errors[-1] < NUMERICS_SHARE:
+        if errors[-1].max() < NUMERICS_SHARE:
             return _at(case, tolerance)
-    best_tried = next(t for t, one in zip(tried, errors, strict=True) if one <= IN_VAIN * min(errors))
+        if k > 0 and _hangs_on_a_tie(*errors[-2:]):
+            return _at(case, tried[k - 1])
+    worst = [one.max() for one in errors]
+    best_tried = next(t for t, one in zip(tried, worst, strict=True) if one <= IN_VAIN * min(worst))
     is_falling = best_tried == tried[-1]
     return _at(case, max(TOLERANCES[-1], reference) if is_falling else best_tried)
+
+
+def _hangs_on_a_tie(error: np.ndarray, finer: np.ndarray) -> bool:
+    """Whether each experiment errs little, or by no more than finer steps leave."""
+    return bool(np.all((error < NUMERICS_SHARE) | ((error <= TIE * finer) & (error < TIED_SHARE))))
 
 
 def _at(case: Case, tolerance: float) -> Case:
