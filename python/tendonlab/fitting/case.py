@@ -256,7 +256,7 @@ def fine_enough(case: Case, noise: np.ndarray) -> Case:
     def error(tolerance: float) -> np.ndarray:
         outputs = _outputs(case, tolerance)
         rms = [np.sqrt(np.mean(np.square(a - b), axis=1)) for a, b in zip(outputs, best, strict=True)]
-        return np.max(np.array(rms) / noise[case.measured], axis=1)
+        return np.asarray(np.max(np.array(rms) / noise[case.measured], axis=1))
 
     errors: list[np.ndarray] = []
     tried = [tolerance for tolerance in TOLERANCES if tolerance > reference] or [reference]
