@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri  # scipy.stats takes half a second to import
 
 from tendonlab.diagnosis.answer.heldout import Replayed, row_mean_squares
 from tendonlab.errors import NumericalError
@@ -94,7 +94,7 @@ class _Search:
                 at, best = better
         except NumericalError:
             pass
-        if best is None or at @ self.prior @ at > chi2.isf(RARE, len(at)):
+        if best is None or at @ self.prior @ at > chdtri(len(at), RARE):
             return None
         return self._system(at), tuple(self._own(at)[: len(initial)].tolist()), best - self._measured, best
 
