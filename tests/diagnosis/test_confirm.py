@@ -98,6 +98,21 @@ def test_a_sure_gain_on_held_out_experiments_confirms_a_small_effect(
     assert bool(confirm.confirmed(found(FIRST), shop(10.0, 9.5, gain=gain)).selected) is kept
 
 
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize(("after", "kept"), [(3.0, True), (6.3, True), (6.5, False), (9.0, False)])
+def test_an_effect_beside_others_must_remove_more(
+    found: Callable[..., Search], shop: Callable[..., Any], after: float, kept: bool, repeated: bool
+) -> None:
+    """Of 99 six tenths are 59.4, which is left at sqrt(40.6) = 6.37, however sure the gain."""
+    search = confirm.confirmed(found(FIRST, SECOND, repeated=repeated), shop(100.0, 10.0, after, gain=50.0))
+    assert search.selected == ((FIRST, SECOND) if kept else (FIRST,))
+
+
+def test_nothing_is_added_where_others_left_less(found: Callable[..., Search], shop: Callable[..., Any]) -> None:
+    search = confirm.confirmed(found(FIRST, SECOND), shop(10.0, 0.8, 0.9, gain=50.0))
+    assert search.selected == (FIRST,)
+
+
 def test_without_held_out_experiments_nothing_is_refuted(
     found: Callable[..., Search], shop: Callable[..., Any]
 ) -> None:

@@ -3,7 +3,10 @@
 Without repeats nothing tells what repeats from what a sensor adds. A slow error of a sensor then looks like an effect
 on the training experiments, but not on others. With repeats an effect may imitate a cause that the library lacks; where
 held-out experiments are foretold worse with that effect, the imitation fails. Repeats of one motion share what happens
-by chance; an effect that gains on them alone explains that chance."""
+by chance; an effect that gains on them alone explains that chance.
+
+Effects of rigs have other forms than the library's. What the form of the first effect leaves, a further one may remove
+in part, on all experiments alike."""
 
 from __future__ import annotations
 
@@ -16,6 +19,9 @@ from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
+FURTHER = (
+    0.6  # the same of an effect beside others, which may only mend the form of theirs: such ones remove 0.1 to 0.56
+)
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 
@@ -30,19 +36,24 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are foretold worse with the last effect, or hardly better though the training
     experiments foretell much; without repeats where it removes little of what the model without it leaves, and may do
-    even that by chance."""
+    even that by chance; and where an effect beside others leaves much of what they leave."""
     case, fitter = search.fitter.case, search.fitter
     won = search.rounds[len(search.steps) - 1].accepted
     assert won is not None  # every step was won
-    if not case.test or relief(*search.path[-2:]) > CLEAR.evidence:  # what beliefs confirm needs no experiment
+    is_first = len(search.selected) == 1
+    if not case.test or (
+        is_first and relief(*search.path[-2:]) > CLEAR.evidence
+    ):  # what beliefs confirm needs no other
         return False
     try:
         before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
     except NumericalError:  # the answer leaves out what one of the models cannot simulate
         return False
+    share = heldout.explained(before, after, fitter.floor.reached_by(heldout.rms(after)))
+    if not is_first and (share or 0.0) < FURTHER:
+        return True
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
     if fitter.floor.repeated:
         foretold = CARRIED * won.left_out_gain * len(case.test) / len(case.train)
         return gain["mean"] < max(0.0, min(SURE * gain["se"], foretold))
-    share = heldout.explained(before, after, fitter.floor.reached_by(heldout.rms(after)))
     return share is not None and share < CONFIRMED and gain["mean"] < SURE * gain["se"]
