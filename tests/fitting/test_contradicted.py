@@ -75,7 +75,7 @@ def at_every(rig: Dataset, num: int, *, means: bool) -> Dataset:
             size = num * (len(e.data) // num)
             held = e.data["motor_torque"].to_numpy()[:size].reshape(-1, num).mean(axis=1)
             data["motor_torque"] = np.append(held, e.data["motor_torque"].iloc[size:].mean())[: len(data)]
-        holds = {**e.holds, "reference_angle": False}
+        holds = {**e.holds, "reference_angle": False, "motor_torque": not means}  # a mean holds, whatever is stated
         return replace(e, data=data.iloc[: len(e.data) // num], holds=holds)
 
     return replace(rig, experiments=tuple(slower(e) for e in rig.experiments))
@@ -85,7 +85,7 @@ def test_a_logged_command_stands_in_for_the_controller(rig: Dataset, monkeypatch
     """But where noise shakes the rig that thinning would lose: only the controller makes that again."""
     assert opened(rig, rig.system()).controller is None
     assert thinned(rig) is rig
-    monkeypatch.setattr(thinning, "SHOOK", 0.15)
+    monkeypatch.setattr(thinning, "MOST_LOST_OF_A_LOOP", 0.15)
     few = thinned(rig)
     assert few.controller is None
     assert len(few.experiments[0].data) <= 0.2 * len(rig.experiments[0].data)
@@ -101,7 +101,9 @@ def test_a_contradicted_one_stays(rig: Dataset, name: str, factor: float) -> Non
 @pytest.mark.parametrize(("means", "stands_in"), [(True, True), (False, False)])
 def test_a_slow_log_stands_in_if_it_holds_means(rig: Dataset, means: bool, stands_in: bool) -> None:
     slow = at_every(rig, 5, means=means)
-    assert (opened(slow, slow.system()).controller is None) == stands_in
+    found = opened(slow, slow.system())
+    assert (found.controller is None) == stands_in
+    assert all(e.holds["motor_torque"] for e in found)
     assert (thinned(slow).controller is None) == stands_in  # nothing to thin, but ticks to save
 
 
@@ -110,3 +112,16 @@ def test_a_controller_stays_where_a_run_lacks_its_command_or_the_motor(rig: Data
     for name in ("motor_torque", "motor_angle"):
         lacks = replace(rig, experiments=(replace(first, data=first.data.drop(columns=name)), *others))
         assert opened(lacks, lacks.system()) is lacks
+
+
+def test_the_runs_that_are_fitted_decide(rig: Dataset) -> None:
+    """As they do whether the controller is believed at all."""
+
+    def wrong(e: Experiment) -> Experiment:
+        return replace(e, data=e.data.assign(motor_torque=1.3 * e.data["motor_torque"]))
+
+    for split, stays in (("train", True), ("test", False)):
+        runs = tuple(wrong(e) if e.split == split else e for e in rig.experiments)
+        given = replace(rig, experiments=runs)
+        assert (opened(given, given.system()) is given) == stays
+        assert (choose_replay(given, given.system()).kind == "injection") == stays

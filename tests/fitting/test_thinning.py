@@ -173,3 +173,12 @@ def test_rounding_falls_with_the_noise(rig, stated):
     assert 0.2 < gain < 0.6
     there = noise_of(few.signals["joint_angle"], [after.data["joint_angle"].to_numpy()])
     assert there == pytest.approx(gain * np.hypot(step / np.sqrt(12.0), stated or 0.0), rel=1e-9)
+
+
+def test_a_sensor_that_is_read_at_few_stamps_is_not_lost(rig):
+    """At 100 Hz too few samples for a parabola in any window: nothing would be left of the sensor."""
+    (experiment,) = rig.experiments
+    sparse = experiment.data["joint_angle"].where(np.arange(len(experiment.data)) % 3 == 0)
+    assert np.isnan(local_parabolas(TIME, sparse.to_numpy(), 10).values).all()
+    _, few = thin(rig, joint_angle=sparse)
+    assert few.data["joint_angle"].count() > 400

@@ -72,7 +72,10 @@ def test_where_finer_steps_are_in_vain_the_loosest_of_the_best_is_taken(monkeypa
     assert fine_enough(case(measured=[0]), np.ones(1)).tolerance == TOLERANCES[1]
 
 
-@pytest.mark.parametrize(("tied", "taken"), [((0.30, 0.28, 0.27), 0), ((0.30, 0.15, 0.14), 1), ((0.60, 0.58, 0.57), 3)])
+@pytest.mark.parametrize(
+    ("tied", "taken"),
+    [((0.30, 0.28, 0.27), 0), ((0.30, 0.15, 0.14), 3), ((0.30, 0.29, 0.02), 2), ((0.60, 0.58, 0.57), 3)],
+)
 def test_finer_steps_are_not_taken_where_an_experiment_hangs_on_a_tie(
     tied: tuple[float, ...], taken: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -16,8 +16,8 @@ from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
 from tendonlab.diagnosis.search.select import select_effects
 from tendonlab.diagnosis.search.workshop import open_workshop
-from tendonlab.errors import ParameterError
-from tendonlab.fitting.case import make_case
+from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
@@ -60,9 +60,9 @@ def diagnose(
         dataset = without_outliers(dataset)
     system = dataset.system() if system is None else system
     few = thinned(dataset, system)
-    loop = make_case(dataset, system) if few.controller is not dataset.controller else None
+    loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
     with open_workshop(names, progress=progress) as shop:
-        case = make_case(few, system)
+        case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
         rough = rough_fit(case, shop.cancel)
         fitter = under_noise_floor(case, rough, shop.pool, shop.cancel)
         initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
@@ -76,6 +76,15 @@ def diagnose(
         why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
     return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
+
+
+def _loop(dataset: Dataset, system: System) -> tuple[Case | None, tuple[str, ...]]:
+    """The closed loop of a rig that is weighed without; a warning where the simulator cannot run in it."""
+    try:
+        case = make_case(dataset, system)
+    except NumericalError as error:
+        return None, (f"Errors are those of an injection: the simulator does not run in its closed loop ({error}).",)
+    return (case if case.replay.kind == "controller" else None), ()
 
 
 def _library(dataset: Dataset, library: str | Sequence[str]) -> Sequence[str] | None:

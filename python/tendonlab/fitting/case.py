@@ -264,17 +264,18 @@ def fine_enough(case: Case, noise: np.ndarray) -> Case:
         errors.append(error(tolerance))
         if errors[-1].max() < NUMERICS_SHARE:
             return _at(case, tolerance)
-        if k > 0 and _hangs_on_a_tie(*errors[-2:]):
-            return _at(case, tried[k - 1])
+        if k > 1 and _hangs_on_a_tie(*errors[-3:]):
+            return _at(case, tried[k - 2])
     worst = [one.max() for one in errors]
     best_tried = next(t for t, one in zip(tried, worst, strict=True) if one <= IN_VAIN * min(worst))
     is_falling = best_tried == tried[-1]
     return _at(case, max(TOLERANCES[-1], reference) if is_falling else best_tried)
 
 
-def _hangs_on_a_tie(error: np.ndarray, finer: np.ndarray) -> bool:
-    """Whether each experiment errs little, or by no more than finer steps leave."""
-    return bool(np.all((error < NUMERICS_SHARE) | ((error <= TIE * finer) & (error < TIED_SHARE))))
+def _hangs_on_a_tie(error: np.ndarray, finer: np.ndarray, finest: np.ndarray) -> bool:
+    """Whether each experiment errs little, or hardly more than with steps that are finer, and finer again."""
+    falls = (error > TIE * finer) | (finer > TIE * finest)
+    return bool(np.all((error < NUMERICS_SHARE) | (~falls & (error < TIED_SHARE))))
 
 
 def _at(case: Case, tolerance: float) -> Case:

@@ -67,8 +67,11 @@ def opened(dataset: Dataset, system: System) -> Dataset:
     if controller is None or motor is None or not system.info.commanded:
         return dataset
     command = system.info.inputs[0].name
-    lost = [_lost(controller, e, command) if _holds(e, motor) else np.inf for e in dataset]
-    return replace(dataset, controller=None) if np.median(lost) <= 1.0 and np.isfinite(lost).all() else dataset
+    lost = {e.name: _lost(controller, e, command) if _holds(e, motor) else np.inf for e in dataset}
+    if not np.isfinite(list(lost.values())).all() or np.median([lost[e.name] for e in dataset.train]) > 1.0:
+        return dataset
+    runs = (replace(e, holds=e.holds | {command: True}) if is_slower(e, controller) else e for e in dataset)
+    return replace(dataset, controller=None, experiments=tuple(runs))  # means hold from sample to sample
 
 
 def _lost(controller: Controller, experiment: Experiment, command: str) -> float:

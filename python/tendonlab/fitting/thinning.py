@@ -21,8 +21,8 @@ from tendonlab.simulation.system import System
 
 RATE = 100.0  # Hz: logs are thinned to no less
 LOST = 1.15  # residual of the parabolas over the sensors' noise: more, and they would smooth motion away
-SHAKES = 0.2  # rms of an input's noise over that of the input: more shakes a rig, which eases its friction
-SHOOK = 0.05  # the same where the known controller makes that noise again
+MOST_LOST = 0.2  # rms of an input's noise over that of the input: more shakes a rig, which eases its friction
+MOST_LOST_OF_A_LOOP = 0.05  # the same where a simulated controller would make that noise again
 THINNED = (
     "The logs were thinned from {:.0f} to {:.0f} samples per second; errors and noise floors are those of the smoothed "
     "signals."
@@ -52,11 +52,13 @@ def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
     outputs = [s.name for s in system.info.outputs if s.name in dataset.signals]
     records = {name: [(e.time, _column(e, name)) for e in dataset if name in e.data.columns] for name in outputs}
     noise = {name: noise_of(dataset.signals[name], [row for _, row in of]) for name, of in records.items() if of}
-    factor, most = int(1.0 / (RATE * max(steps)) + 1e-6), SHAKES if closed.controller is None else SHOOK
+    factor = int(1.0 / (RATE * max(steps)) + 1e-6)
+    most = MOST_LOST if closed.controller is None else MOST_LOST_OF_A_LOOP
     while factor > 1:
         smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
         lost = max((_lost_of(e, given, factor) for e in dataset for given in _inputs_of(e, system)), default=0.0)
-        if lost <= most and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
+        kept = all(_keeps_samples(records[name], smooth[name]) for name in noise)
+        if kept and lost <= most and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
             signals = {name: _smoothed(dataset.signals[name], noise[name], _gain(smooth[name])) for name in noise}
             few = tuple(_thin(e, system, list(noise), factor) for e in dataset)
             said = (*dataset.warnings, THINNED.format(1.0 / max(steps), 1.0 / (max(steps) * factor)))
@@ -95,6 +97,14 @@ def _smoothed(signal: SignalSpec, noise: float, gain: float) -> SignalSpec:
 def _windows(row: np.ndarray, factor: int) -> np.ndarray:
     padded = np.pad(np.asarray(row, dtype=float), factor, constant_values=np.nan)
     return np.lib.stride_tricks.sliding_window_view(padded, 2 * factor + 1)[::factor]
+
+
+def _keeps_samples(records: Sequence[tuple[np.ndarray, np.ndarray]], smooth: Sequence[Thinned]) -> bool:
+    """Whether no record that was measured is lost, as of a sensor that is read at few of the stamps."""
+    return all(
+        np.isfinite(of.values).sum() > 1 or np.isfinite(values).sum() < 2
+        for (_, values), of in zip(records, smooth, strict=True)
+    )
 
 
 def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:

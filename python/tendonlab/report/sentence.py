@@ -90,7 +90,9 @@ def _parameters_only(diagnosis: Diagnosis) -> str:
 
 
 def _floors(diagnosis: Diagnosis, stage: str) -> float:
-    """The held-out error at a stage over the noise floor, rms over the outputs."""
+    """The held-out error at a stage over the noise floor, rms over the outputs, as the verdict counted it."""
+    if weighed := diagnosis.details.get("weighed_by"):
+        return float(weighed["errors"][stage])
     squares = [(error[stage] / error["noise_floor"]) ** 2 for error in diagnosis.gap.values()]
     return float((sum(squares) / len(squares)) ** 0.5) if squares else 0.0
 

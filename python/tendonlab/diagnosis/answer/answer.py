@@ -42,12 +42,12 @@ def answer(
     search: Search, nominal: Fitted, loop: Case | None, *, library: Sequence[str] | None, seed: int, seconds: Seconds
 ) -> Diagnosis:
     """The Diagnosis of a finished search. `nominal`: the untouched simulator, fitted in its initial states alone;
-    `loop`: the same logs with their controller, where models were weighed without: the errors that are told are those
-    of its closed loop; `library`: names of the effects that were asked for (None: all)."""
+    `loop`: the same logs with their controller, where models were weighed without; the report then shows the errors in
+    its closed loop; `library`: names of the effects that were asked for (None: all)."""
     fitter, case = search.fitter, search.fitter.case
     weighed = Judged.of(case, fitter.floor, search)
     floor, judged, stages = weighed.floor, weighed.experiments, weighed.stages
-    shown, lost = _shown(weighed, loop, search)
+    shown, trouble = _shown(weighed, loop, search)
     drift = over_session(case, search.final)
     outlier = None if search.selected else find_outlier_run(case, search.tuned, floor)
     near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
@@ -80,7 +80,7 @@ def answer(
         caveats=caveats(search.final, shown, drift, outlier),
         warnings=(
             *notes.warnings(shown.case, floor, search),
-            *lost,
+            *trouble,
             *notes.not_asked(case, search, library),
             *notes.on_the_held_out(weighed, shown, near, search.selected),
             *notes.no_noise(levels),
@@ -104,7 +104,7 @@ def _shown(weighed: Judged, loop: Case | None, search: Search) -> tuple[Judged, 
     try:
         return Judged.in_loop(loop, search), []
     except NumericalError as error:
-        return weighed, [f"Errors are those of an injection. In the closed loop {error}."]
+        return weighed, [f"Errors are those of an injection. In the closed loop: {error}."]
 
 
 def _where(

@@ -9,7 +9,7 @@ import numpy as np
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.beliefs import pulled
 from tendonlab.diagnosis.answer.heldout import Replayed
-from tendonlab.diagnosis.answer.judged import WORSE, Judged
+from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
@@ -18,6 +18,7 @@ from tendonlab.fitting.noise import Floor
 from tendonlab.report.numbers import number, unit_text
 from tendonlab.report.words import capital, changed_friction, words
 
+WORSE = 1.05  # ratio of held-out mean squares, above the floor, that is no accident of rounding
 PULLED = 4.0  # stated standard deviations from the stated value
 
 

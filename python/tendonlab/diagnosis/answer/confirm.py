@@ -19,9 +19,7 @@ from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
-FURTHER = (
-    0.6  # the same of an effect beside others, which may only mend the form of theirs: such ones remove 0.1 to 0.56
-)
+FURTHER = 0.6  # the same of an effect beside others: one that only mends the form of theirs removes 0 to 0.56
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 
@@ -37,20 +35,17 @@ def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are foretold worse with the last effect, or hardly better though the training
     experiments foretell much; without repeats where it removes little of what the model without it leaves, and may do
     even that by chance; and where an effect beside others leaves much of what they leave."""
-    case, fitter = search.fitter.case, search.fitter
-    won = search.rounds[len(search.steps) - 1].accepted
+    case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
+    won, is_first = search.rounds[len(search.steps) - 1].accepted, len(search.selected) == 1
     assert won is not None  # every step was won
-    is_first = len(search.selected) == 1
-    if not case.test or (
-        is_first and relief(*search.path[-2:]) > CLEAR.evidence
-    ):  # what beliefs confirm needs no other
+    if not case.test or (is_first and relief(*pair) > CLEAR.evidence):  # what beliefs confirm needs no experiment
         return False
     try:
-        before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in search.path[-2:])
+        before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in pair)
     except NumericalError:  # the answer leaves out what one of the models cannot simulate
         return False
     share = heldout.explained(before, after, fitter.floor.reached_by(heldout.rms(after)))
-    if not is_first and (share or 0.0) < FURTHER:
+    if not is_first and (float(fitter.floor.repeated) if share is None else share) < FURTHER:
         return True
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
     if fitter.floor.repeated:

@@ -58,14 +58,18 @@ def _numbers(fitter: Fitter, trial: Trial, weighed: Judged, shown: Judged, seed:
     about: dict[str, Any] = {"parameters": _parameters(trial)}
     try:
         replayed = _replayed(weighed, trial)
-        seen = replayed if shown.case is weighed.case else _replayed(shown, trial)
     except NumericalError:  # a candidate that the training experiments already speak against
         return about
     of, refitted = weighed.case, weighed.stages["refitted"]
     gain = heldout.predictive_gain(of, fitter.whitening, fitter.floor, refitted, replayed, weighed.experiments)
+    about["held_out_gain"] = gain
+    try:
+        seen = replayed if shown.case is weighed.case else _replayed(shown, trial)
+    except NumericalError:  # it runs in the injection only
+        return about
     before, rng = shown.stages["refitted"], np.random.default_rng(seed)
     shrinkage = heldout.shrinkage(shown.case, before, seen, shown.floor, shown.experiments, rng)
-    return about | {"held_out_gain": gain, "shrinkage": shrinkage}
+    return about | {"shrinkage": shrinkage}
 
 
 def _replayed(of: Judged, trial: Trial) -> Replayed:

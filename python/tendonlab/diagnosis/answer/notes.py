@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.diagnosis.answer import where
-from tendonlab.diagnosis.answer.confirm import CONFIRMED
+from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, Levels
@@ -27,6 +27,7 @@ from tendonlab.simulation.catalog import unit
 if TYPE_CHECKING:
     import pandas as pd
 
+APART = 1.5  # ratio of held-out errors in the closed loop and in an injection, beyond which a reader must know both
 UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatability is the limit
 
 
@@ -126,12 +127,17 @@ def _on_the_failed(search: Search) -> list[str]:
 
 
 def _on_the_refuted(search: Search) -> list[str]:
-    if not search.refuted:
-        return []
+    """Effects that held-out experiments refute: first one that stood alone, then those beside others."""
+    num_alone = 0 if search.selected else 1
     chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
     against = "held-out ones are predicted worse with it, or hardly better" if search.fitter.floor.repeated else chance
-    names = ", ".join(search.refuted)
-    return [f"Not established: {names}. The training experiments speak for it, but {against}."]
+    mends = f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave"
+    reasons = [(search.refuted[:num_alone], against), (search.refuted[num_alone:], f"{mends}, or predicts no better")]
+    return [
+        f"Not established: {', '.join(names)}. The training experiments speak for it, but {why}."
+        for names, why in reasons
+        if names
+    ]
 
 
 def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list[str]:
@@ -147,15 +153,28 @@ def on_the_held_out(weighed: Judged, shown: Judged, near: Mapping[str, Replayed]
     """Warnings about single held-out experiments. `near`: the replays that the verdict counts."""
     foretold, allowed = weighed.stages["with_effect"], near["with_effect"]
     return [
-        *not_simulated(weighed.failed | shown.failed),
+        *not_simulated(weighed.failed),
+        *(not_simulated(shown.failed) if shown is not weighed else []),
+        *_apart(weighed, shown),
         *not_improved(shown.per_experiment(), selected),
         *allowed_more(weighed.case, foretold, allowed, weighed.floor, weighed.experiments),
     ]
 
 
+def _apart(weighed: Judged, shown: Judged) -> list[str]:
+    """A warning where the verdict rests on errors that are far below those in the closed loop."""
+    used, seen = weighed.errors()["with_effect"], shown.errors()["with_effect"]
+    if seen <= APART * max(1.0, used):
+        return []
+    return [
+        f"In the closed loop the held-out error is {seen:.2g} noise floors. The verdict counts the {used:.2g} of an "
+        "injection, which follows the logged motion: in the loop errors add up."
+    ]
+
+
 def not_simulated(failed: Mapping[str, str]) -> list[str]:
-    """A warning for each experiment that no judgement counts. `failed`: why it could not be simulated, by its name."""
-    left_out = "is left out of the judgement, as it could not be simulated"
+    """A warning for each experiment that errors leave out. `failed`: why it could not be simulated, by its name."""
+    left_out = "is left out of the errors, as it could not be simulated"
     return [f"Experiment {name} {left_out}: {why}." for name, why in failed.items()]
 
 
@@ -232,7 +251,8 @@ def weighed(by: Judged, shown: Judged) -> dict[str, Any]:
     if shown.case is by.case:
         return {}
     step = float(np.median(np.diff(by.case.experiments[by.case.train[0]].time)))
-    return {"weighed_by": replay(by.case) | {"samples_per_second": float(f"{1.0 / step:.4g}")}}
+    how = {"samples_per_second": float(f"{1.0 / step:.4g}"), "errors": by.errors()}
+    return {"weighed_by": replay(by.case) | how}
 
 
 def units(case: Case) -> dict[str, str]:

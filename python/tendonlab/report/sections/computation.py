@@ -47,7 +47,10 @@ def _weighed(diagnosis: Diagnosis) -> list[tuple[str, str]]:
         return []
     rate = numbers.number(by["samples_per_second"])
     return [
-        ("Fits and probabilities", f"{_loop(by)}; {rate} samples per second. Errors are those of the replay above.")
+        (
+            "Fits and probabilities",
+            f"{_loop(by)}; {rate} samples per second. The tables of errors are of the replay above.",
+        )
     ]
 
 
