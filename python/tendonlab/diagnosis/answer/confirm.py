@@ -20,6 +20,7 @@ from tendonlab.errors import NumericalError
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
 FURTHER = 0.6  # the same of an effect beside others: one that only mends the form of theirs removes 0 to 0.56
+NEAR = 4.0  # mean square over the floor with it, beyond which more is missing and that share tells nothing
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 
@@ -34,19 +35,24 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are foretold worse with the last effect, or hardly better though the training
     experiments foretell much; without repeats where it removes little of what the model without it leaves, and may do
-    even that by chance; and where an effect beside others leaves much of what they leave."""
+    even that by chance; and near the floor where an effect beside others leaves much of what they leave."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     won, is_first = search.rounds[len(search.steps) - 1].accepted, len(search.selected) == 1
     assert won is not None  # every step was won
-    if not case.test or (is_first and relief(*pair) > CLEAR.evidence):  # what beliefs confirm needs no experiment
+    is_believed = relief(*pair) > CLEAR.evidence  # what beliefs confirm needs no experiment
+    if not case.test or (is_first and is_believed):
         return False
     try:
         before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in pair)
     except NumericalError:  # the answer leaves out what one of the models cannot simulate
         return False
-    share = heldout.explained(before, after, fitter.floor.reached_by(heldout.rms(after)))
-    if not is_first and (float(fitter.floor.repeated) if share is None else share) < FURTHER:
+    floor = fitter.floor.reached_by(heldout.rms(after))
+    share = heldout.explained(before, after, floor)
+    removed = float(floor.repeated) if share is None else share
+    if not is_first and heldout.level(after, floor) < NEAR and removed < FURTHER:
         return True
+    if is_believed:
+        return False
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
     if fitter.floor.repeated:
         foretold = CARRIED * won.left_out_gain * len(case.test) / len(case.train)
