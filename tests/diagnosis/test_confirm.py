@@ -103,7 +103,7 @@ def test_a_sure_gain_on_held_out_experiments_confirms_a_small_effect(
 def test_an_effect_beside_others_must_remove_more(
     found: Callable[..., Search], shop: Callable[..., Any], after: float, kept: bool, repeated: bool
 ) -> None:
-    """Of 3 six tenths are 1.8, which is left at sqrt(2.2) = 1.48, however sure the gain. Farther away more is missing."""
+    """Of 3 six tenths are 1.8, which is left at sqrt(2.2) = 1.48, however sure the gain; beyond 4 more is missing."""
     left = 2.0 if after < 2.0 else 2.1
     search = confirm.confirmed(found(FIRST, SECOND, repeated=repeated), shop(100.0, left, after, gain=50.0))
     assert search.selected == ((FIRST, SECOND) if kept else (FIRST,))
