@@ -116,3 +116,19 @@ def test_a_rig_with_a_controller_is_weighed_on_thinned_logs(monkeypatch: pytest.
     assert told.details["weighed_by"]["samples_per_second"] == 100.0
     assert len(told.overlays[0].time) == 2000  # as it was logged
     assert told.gap["joint_angle"]["with_effect"] < 0.4 * told.gap["joint_angle"]["refitted"]
+
+
+def test_a_loop_that_does_not_repeat_is_weighed_by_injection(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing else of the diagnosis runs."""
+    kinds = []
+
+    def under_floor(case: Any, shop: Any) -> Any:
+        kinds.append(case.replay.kind)
+        if len(kinds) == 2:
+            raise KeyboardInterrupt
+        return None, SimpleNamespace(floor=SimpleNamespace(tau=0.3))
+
+    monkeypatch.setattr(diagnosing, "_under_floor", under_floor)
+    with pytest.raises(KeyboardInterrupt):
+        tl.diagnose(tl.load(bundled()), progress=False)
+    assert kinds == ["controller", "injection"]

@@ -15,15 +15,19 @@ from tendonlab.diagnosis.answer.confirm import confirmed
 from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
 from tendonlab.diagnosis.search.select import select_effects
-from tendonlab.diagnosis.search.workshop import open_workshop
+from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.replay import opened
 from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
 from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
+UNREPEATED = 0.2  # sd of friction from run to run that no friction has: the closed loop itself does not repeat
 PLAIN = 1e-3  # relative change of the cost at which the fit of the untouched simulator's initial states ends
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
@@ -63,8 +67,10 @@ def diagnose(
     loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
     with open_workshop(names, progress=progress) as shop:
         case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
-        rough = rough_fit(case, shop.cancel)
-        fitter = under_noise_floor(case, rough, shop.pool, shop.cancel)
+        rough, fitter = _under_floor(case, shop)
+        if fitter.floor.tau > UNREPEATED and (logged := opened(few, system)).controller is not few.controller:
+            loop, case = case, make_case(logged, system)
+            rough, fitter = _under_floor(case, shop)
         initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
         nominal = fitter.fit(  # any: there may be no unknowns
             case.system, initial=initial, known=True, solve=any(initial), tolerance=PLAIN
@@ -85,6 +91,12 @@ def _loop(dataset: Dataset, system: System) -> tuple[Case | None, tuple[str, ...
     except NumericalError as error:
         return None, (f"Errors are those of an injection: the simulator does not run in its closed loop ({error}).",)
     return (case if case.replay.kind == "controller" else None), ()
+
+
+def _under_floor(case: Case, shop: Workshop) -> tuple[Fitted, Fitter]:
+    """A rough fit, and the fitter under the noise floor that its residuals show."""
+    rough = rough_fit(case, shop.cancel)
+    return rough, under_noise_floor(case, rough, shop.pool, shop.cancel)
 
 
 def _library(dataset: Dataset, library: str | Sequence[str]) -> Sequence[str] | None:
