@@ -30,7 +30,7 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> Any:
 
     def of(rounds: list[Any], probability: dict[str, float], selected: tuple[str, ...] = ()) -> Any:
         nothing: Any = None
-        search: Any = SimpleNamespace(rounds=rounds, selected=selected, fitter=nothing)
+        search: Any = SimpleNamespace(rounds=rounds, selected=selected, refuted=(), fitter=nothing)
         return findings(search, probability, nothing, nothing, 0)
 
     return of
@@ -84,9 +84,25 @@ def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(mo
         unit=lambda _: "N*m",
     )
     fitted: Any = SimpleNamespace(
-        system=system, free=[SimpleNamespace(name="joint_level")], value=lambda _: (0.3, (0.2, 0.5))
+        added=("joint:a",), system=system, free=[SimpleNamespace(name="joint_level")], value=lambda _: (0.3, (0.2, 0.5))
     )
-    fitter: Any = SimpleNamespace(case=None, floor=None)
+    search: Any = SimpleNamespace(fitter=None, selected=(), refuted=())
     judged: Any = SimpleNamespace(case=None, experiments=())
-    found = _numbers(fitter, Trial("joint:a", fitted, 9.0, 9.0, 0.0), judged, judged, 0)
+    found = _numbers(search, Trial("joint:a", fitted, 9.0, 9.0, 0.0), judged, judged, 0)
     assert found == {"parameters": {"level": {"value": 0.3, "ci95": [0.2, 0.5], "unit": "N*m"}}}
+
+
+def test_an_effect_that_is_the_whole_answer_shrinks_the_gap_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its trial was fitted before the answer's last fit: two numbers for one effect would contradict each other."""
+    with_effect: Any = object()
+    of: Any = SimpleNamespace(case=None, experiments=(), stages={"with_effect": with_effect})
+    monkeypatch.setattr(answer.heldout, "models", lambda *_: None)
+    monkeypatch.setattr(answer.heldout, "replay", lambda *_: "alone")
+    pair = trial("b", 9.0, "a")
+
+    def replayed(selected: tuple[str, ...], refuted: tuple[str, ...] = ()) -> Any:
+        search: Any = SimpleNamespace(selected=selected, refuted=refuted)
+        return answer._replayed(of, pair, search)
+
+    assert replayed(("b", "a")) is replayed(("b",), ("a",)) is with_effect
+    assert replayed(("b",)) == replayed(("a",), ("b",)) == "alone"

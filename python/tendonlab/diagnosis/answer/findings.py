@@ -14,7 +14,6 @@ from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.errors import NumericalError
-from tendonlab.fitting.problem import Fitter
 from tendonlab.report.diagnosis import EffectFinding
 
 
@@ -34,8 +33,8 @@ def findings(
             extra = {"screened_gain": screened[name].gain, "visibility": screened[name].visibility}
         about: dict[str, Any] = {}
         if name in trials:
-            about = _numbers(search.fitter, trials[name], weighed, shown, seed)
-            extra |= _evidence(trials[name])
+            about = _numbers(search, trials[name], weighed, shown, seed)
+            extra |= _evidence(trials[name], search)
         rows.append(
             EffectFinding(effect=effect, element=element, probability=probability.get(name, 0.0), extra=extra, **about)
         )
@@ -54,17 +53,18 @@ def _telling_trials(search: Search) -> dict[str, Trial]:
     return {name: trial for name, (_, trial) in chosen.items()}
 
 
-def _numbers(fitter: Fitter, trial: Trial, weighed: Judged, shown: Judged, seed: int) -> dict[str, Any]:
+def _numbers(search: Search, trial: Trial, weighed: Judged, shown: Judged, seed: int) -> dict[str, Any]:
+    fitter = search.fitter
     about: dict[str, Any] = {"parameters": _parameters(trial)}
     try:
-        replayed = _replayed(weighed, trial)
+        replayed = _replayed(weighed, trial, search)
     except NumericalError:  # a candidate that the training experiments already speak against
         return about
     of, refitted = weighed.case, weighed.stages["refitted"]
     gain = heldout.predictive_gain(of, fitter.whitening, fitter.floor, refitted, replayed, weighed.experiments)
     about["held_out_gain"] = gain
     try:
-        seen = replayed if shown.case is weighed.case else _replayed(shown, trial)
+        seen = replayed if shown.case is weighed.case else _replayed(shown, trial, search)
     except NumericalError:  # it runs in the injection only
         return about
     before, rng = shown.stages["refitted"], np.random.default_rng(seed)
@@ -72,8 +72,16 @@ def _numbers(fitter: Fitter, trial: Trial, weighed: Judged, shown: Judged, seed:
     return about | {"shrinkage": shrinkage}
 
 
-def _replayed(of: Judged, trial: Trial) -> Replayed:
+def _replayed(of: Judged, trial: Trial, search: Search) -> Replayed:
+    """The model of a trial; where that is the whole answer, as the answer fitted it last."""
+    if trial.effect in search.selected and set(_kept(trial, search)) == set(search.selected):
+        return of.stages["with_effect"]
     return heldout.replay(of.case, heldout.models(of.case, trial.fitted, of.experiments), of.experiments)
+
+
+def _kept(trial: Trial, search: Search) -> list[str]:
+    """The effects of a trial, without those that held-out experiments refuted since."""
+    return [name for name in trial.fitted.added if name == trial.effect or name not in search.refuted]
 
 
 def _parameters(trial: Trial) -> dict[str, dict[str, Any]]:
@@ -92,11 +100,11 @@ def _parameters(trial: Trial) -> dict[str, dict[str, Any]]:
     return rows
 
 
-def _evidence(trial: Trial) -> dict[str, Any]:
+def _evidence(trial: Trial, search: Search) -> dict[str, Any]:
     return {
         "evidence_gain": trial.evidence_gain,
         "left_out_gain": trial.left_out_gain,
-        "beside": list(trial.fitted.added[:-1]),
+        "beside": [name for name in _kept(trial, search) if name != trial.effect],
     }
 
 
