@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tendonlab import _core
+from tendonlab.diagnosis.answer.notes import _on_the_floor
 from tendonlab.diagnosis.floor import renewed, rough_fit
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, estimate
@@ -69,3 +70,35 @@ def test_friction_that_moves_next_to_nothing_differs_by_no_large_factor(twin_cas
         direction = 1e-9 * twin_case.noise[:, None] * draw.standard_normal((1, *ready.measured.shape))
         seen.append(Sensitivities(residual, direction, direction[:0]))
     assert estimate(twin_case, seen, twin_case.train).tau < 0.01
+
+
+@pytest.mark.parametrize(
+    ("kind", "phase", "repeats"),
+    [
+        ("injection", 0.3, True),
+        ("injection", 1.5, False),
+        ("controller", 1.5, True),
+    ],
+)
+def test_runs_whose_commands_differ_do_not_repeat(twin_case: Any, kind: str, phase: float, repeats: bool) -> None:
+    """A loop in a limit cycle has another phase each time; a simulated loop needs the same reference only."""
+
+    again = [e.name for e in twin_case.experiments if e.repeat is not None]
+
+    def shifted(e: Any) -> Any:
+        late = phase * again.index(e.name) if e.name in again else 0.0
+        return replace(e, data=e.data.assign(motor_torque=0.2 * np.sin(2.0 * np.pi * 3.0 * e.time + late)))
+
+    case = replace(
+        twin_case,
+        replay=replace(twin_case.replay, kind=kind),
+        experiments=tuple(map(shifted, twin_case.experiments)),
+    )
+    draw = np.random.default_rng(2)
+    seen = []
+    for ready in case.prepared:
+        none = np.zeros((0, *ready.measured.shape))
+        seen.append(Sensitivities(case.noise[:, None] * draw.standard_normal(ready.measured.shape), none, none))
+    floor = estimate(case, seen, case.train)
+    assert floor.repeated == repeats
+    assert any("marked as repeats do not repeat" in said for said in _on_the_floor(case, floor)) != repeats

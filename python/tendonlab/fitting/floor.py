@@ -22,6 +22,7 @@ from tendonlab.simulation.system import System
 AR_ORDER = 6
 NOTHING = 1e-6  # of rounding: readings that differ by less, but for a constant, repeat exactly
 LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatever was stated
+DIFFERENT = 0.5  # of the rms command, by which those of repeats may differ; such of stable loops differ by 0.35 at most
 LARGEST = 0.5  # plausible factor by which friction differs from run to run
 RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
@@ -96,10 +97,25 @@ def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -
     for i, experiment in enumerate(case.experiments):
         if experiment.repeat is not None and seen[i].is_known:
             groups.setdefault(experiment.repeat, []).append(i)
-    repeats = [
-        g for g in groups.values() if len(g) > 1 and len(_shared([case.experiments[i].time for i in g])[0]) > AR_ORDER
-    ]
+    repeats = [g for g in groups.values() if _do_repeat(case, g)]
     return _from_repeats(case, seen, repeats) if repeats else _without_repeats(case, seen, fitted)
+
+
+def _do_repeat(case: Case, group: Sequence[int]) -> bool:
+    """Whether these experiments share samples enough to compare and, where logged commands drive the simulator, the
+    commands: those of a loop in a limit cycle do not repeat."""
+    kept = _shared([case.experiments[i].time for i in group])
+    if len(group) < 2 or len(kept[0]) <= AR_ORDER:
+        return False
+    if case.replay.kind == "controller" or not case.system.info.commanded:
+        return True
+    name = case.system.info.inputs[0].name
+    rows = [case.experiments[i].data.get(name) for i in group]
+    if any(row is None for row in rows):
+        return True
+    commands = np.array([np.asarray(row, dtype=float)[at] for row, at in zip(rows, kept, strict=True)])
+    differ = np.sqrt(np.nanmean(np.square(commands - np.nanmean(commands, axis=0))))
+    return bool(differ <= DIFFERENT * np.sqrt(np.nanmean(np.square(commands))))
 
 
 def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[Sequence[int]]) -> Floor:

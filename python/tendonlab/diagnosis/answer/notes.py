@@ -36,7 +36,7 @@ def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
     return [
         *case.dataset.warnings,
         *_on_the_controller(case),
-        *_on_the_floor(floor),
+        *_on_the_floor(case, floor),
         *_on_the_split(case),
         *_on_the_fits(search),
         *_on_the_failed(search),
@@ -55,9 +55,12 @@ def _on_the_controller(case: Case) -> list[str]:
     ]
 
 
-def _on_the_floor(floor: Floor) -> list[str]:
+def _on_the_floor(case: Case, floor: Floor) -> list[str]:
     if not floor.repeated:
-        return [
+        labels = [e.repeat for e in case.experiments if e.repeat is not None]
+        marked = len(set(labels)) < len(labels)
+        why = "Runs marked as repeats do not repeat: they share few samples, or their commands differ by half and more."
+        return [why] * marked + [
             "No repeated runs, so the noise floor is assumed (sensor noise plus "
             f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % friction scatter; at most what the simulator with the effects named "
             "leaves). Weaker effects may hide below. Repeat one run to measure the floor."
