@@ -106,7 +106,7 @@ def test_an_effect_beside_others_must_remove_more(
     """Of 3 six tenths are 1.8, which is left at sqrt(2.2) = 1.48, however sure the gain; beyond 4 more is missing."""
     left = 2.0 if after < 2.0 else 2.1
     search = confirm.confirmed(found(FIRST, SECOND, repeated=repeated), shop(100.0, left, after, gain=50.0))
-    assert search.selected == ((FIRST, SECOND) if kept else (FIRST,))
+    assert search.selected == ((FIRST, SECOND) if kept or repeated else (FIRST,))
 
 
 def test_nothing_is_added_where_others_left_less(found: Callable[..., Search], shop: Callable[..., Any]) -> None:

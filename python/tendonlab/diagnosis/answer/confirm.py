@@ -35,7 +35,7 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are foretold worse with the last effect, or hardly better though the training
     experiments foretell much; without repeats where it removes little of what the model without it leaves, and may do
-    even that by chance; and near the floor where an effect beside others leaves much of what they leave."""
+    even that by chance, or where, near the floor, an effect beside others leaves much of what they leave."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     won, is_first = search.rounds[len(search.steps) - 1].accepted, len(search.selected) == 1
     assert won is not None  # every step was won
@@ -48,8 +48,8 @@ def _is_refuted(search: Search) -> bool:
         return False
     floor = fitter.floor.reached_by(heldout.rms(after))
     share = heldout.explained(before, after, floor)
-    removed = float(floor.repeated) if share is None else share
-    if not is_first and heldout.level(after, floor) < NEAR and removed < FURTHER:
+    is_near = not floor.repeated and heldout.level(after, floor) < NEAR
+    if not is_first and is_near and (share or 0.0) < FURTHER:
         return True
     if is_believed:
         return False

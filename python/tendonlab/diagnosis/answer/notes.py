@@ -135,7 +135,8 @@ def _on_the_refuted(search: Search) -> list[str]:
     chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
     against = "held-out ones are predicted worse with it, or hardly better" if search.fitter.floor.repeated else chance
     mends = f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave"
-    reasons = [(search.refuted[:num_alone], against), (search.refuted[num_alone:], f"{mends}, or predicts no better")]
+    beside = against if search.fitter.floor.repeated else mends
+    reasons = [(search.refuted[:num_alone], against), (search.refuted[num_alone:], beside)]
     return [
         f"Not established: {', '.join(names)}. The training experiments speak for it, but {why}."
         for names, why in reasons
