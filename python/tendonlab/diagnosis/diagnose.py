@@ -28,6 +28,10 @@ from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
 UNREPEATED = 0.2  # sd of friction from run to run that no friction has: the closed loop itself does not repeat
+NO_REPEAT = (
+    "The closed loop does not repeat, as in a limit cycle whose phase is chance. So errors are those of an injection, "
+    "which follows the logged motion."
+)
 PLAIN = 1e-3  # relative change of the cost at which the fit of the untouched simulator's initial states ends
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
@@ -69,7 +73,7 @@ def diagnose(
         case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
         rough, fitter = _under_floor(case, shop)
         if fitter.floor.tau > UNREPEATED and (logged := opened(few, system)).controller is not few.controller:
-            loop, case = case, make_case(logged, system)
+            case = make_case(replace(logged, warnings=(*logged.warnings, NO_REPEAT)), system)
             rough, fitter = _under_floor(case, shop)
         initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
         nominal = fitter.fit(  # any: there may be no unknowns

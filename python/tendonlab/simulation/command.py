@@ -21,9 +21,7 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
     from scipy.interpolate import CubicSpline
 
     time, data = experiment.time, experiment.data
-    cascade = controller.kind == "cascade"
-    proportional = controller.kd * controller.kp if cascade else controller.kp
-    weight = 1.0 if not cascade and controller.derivative_on == "error" else 0.0
+    proportional, weight = _gains(controller)
     reference = CubicSpline(time, data[controller.reference].to_numpy(dtype=float))
     seen = CubicSpline(time, measured)
     step = controller.sample_time
@@ -39,6 +37,13 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
     return np.asarray(command + _disturbance(controller, experiment, now if step > 0 else time))
 
 
+def _gains(controller: Controller) -> tuple[float, float]:
+    """Command per displacement, and the share of the reference's slope that the derivative sees."""
+    if controller.kind == "cascade":
+        return controller.kd * controller.kp, 0.0
+    return controller.kp, 1.0 if controller.derivative_on == "error" else 0.0
+
+
 def mean_command_of(controller: Controller, experiment: Experiment, measured: np.ndarray) -> np.ndarray:
     """The mean command of `controller` from each sample of `experiment` to the next, shape (n - 1,), where its clock
     ticks several times between them and the output that it sees is `measured`, shape (n,)."""
@@ -49,9 +54,7 @@ def mean_command_of(controller: Controller, experiment: Experiment, measured: np
         wanted, moved = reference[:-1], np.diff(reference, prepend=reference[0])[:-1]
     else:
         wanted, moved = _over_ticks(time, reference, controller.sample_time)
-    cascade = controller.kind == "cascade"
-    proportional = controller.kd * controller.kp if cascade else controller.kp
-    weight = 1.0 if not cascade and controller.derivative_on == "error" else 0.0
+    proportional, weight = _gains(controller)
     command = proportional * (wanted - read) + controller.kd * (weight * moved - change) / step
     disturbance = _disturbance(controller, experiment, time[:-1] + 0.5 * step)
     return np.asarray(np.clip(command, -controller.limit, controller.limit) + disturbance)
@@ -62,10 +65,8 @@ def _over_ticks(time: np.ndarray, values: np.ndarray, period: float) -> tuple[np
     from scipy.interpolate import CubicSpline
 
     curve = CubicSpline(time, values)
-    means = np.diff(curve.antiderivative()(time - 0.5 * period)) / np.diff(
-        time
-    )  # each tick stands for what is around it
-    return means, np.diff(curve(time - period))
+    area = np.diff(curve.antiderivative()(time - 0.5 * period))  # each tick stands for what is around it
+    return area / np.diff(time), np.diff(curve(time - period))
 
 
 def fed_noise(controller: Controller, experiment: Experiment, command: str) -> tuple[np.ndarray, np.ndarray] | None:

@@ -26,6 +26,7 @@ def computation(diagnosis: Diagnosis) -> list[Block]:
     return [Terms(rows=[*rows, ("Run", run)]), *_steps(diagnosis), *_parameters(diagnosis)]
 
 
+_ELSEWHERE = ("parameters", "steps", "evidence", "drift", "weighed_by")  # said there, or only read by a calibration
 _SPLITS = {"train": "Fitted and chosen on", "test": "Held out"}
 
 
@@ -58,13 +59,7 @@ def _details(diagnosis: Diagnosis) -> list[tuple[str, str]]:
     """The known entries of `details` with their units; all others as they are."""
     rows = []
     for key, value in diagnosis.details.items():
-        if key in (
-            "parameters",
-            "steps",
-            "evidence",
-            "drift",
-            "weighed_by",
-        ):  # said elsewhere, or only read by a calibration
+        if key in _ELSEWHERE:
             continue
         if key == "run_to_run_friction":
             rows.append(("Friction from run to run", f"differs by {numbers.percent(value)} (standard deviation)"))
