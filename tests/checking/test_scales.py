@@ -55,6 +55,7 @@ def test_corrected_logs_balance_somewhere_or_suit_the_beliefs(
     ("value", "level", "strain", "before", "credible"),
     [
         (1e-3, 0.08, 7.0, 750.0, True),  # from far away to balance
+        (0.1, 0.32, 7.6, 138.0, True),  # one of seven tensions in kilogram-force, beside a bristle
         (1e-3, 0.68, 7.0, 750.0, False),  # which it does not reach
         (1e-3, 0.08, 7.0, 2.0, False),  # or not from so far
         (1e-3, 0.68, 3.0, 750.0, True),  # beliefs bear it

@@ -88,10 +88,10 @@ def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
 
 
 def test_an_error_that_is_no_noise_is_explained() -> None:
-    near = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, followed=0.1)
+    near = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, patterned=0.1)
     assert notes.no_noise(near) == []
-    (follows,) = notes.no_noise(replace(near, followed=0.45))
-    assert "predicts 45 % of its mean square" in follows
+    (follows,) = notes.no_noise(replace(near, patterned=0.45))
+    assert "holds 45 % of its mean square" in follows
     (large,) = notes.no_noise(replace(near, trained=16.0))
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
     (strained,) = notes.no_noise(replace(near, strained=37.2))

@@ -115,11 +115,11 @@ def test_a_rival_takes_over_where_it_is_clearly_better(
     trial: Callable[..., Trial], fitter: Fitter, nominal: Fitted, ahead: float, swaps: bool
 ) -> None:
     """By more evidence than would establish an effect. The model is full, so no effect is added to the rival."""
-    others = replace(nominal, added=(ASYMMETRY, "load:offset"))
+    others = replace(nominal, added=("actuation:offset", "load:offset"))
     base = replace(nominal, added=(STRIBECK, *others.added))
-    holder, rival = trial(STRIBECK, 100.0), trial(DELAY, 100.0 + ahead)
+    holder, rival = trial(STRIBECK, 100.0), trial(ASYMMETRY, 100.0 + ahead)
     contest = Round.of(
-        others, (), (holder, rival), established={STRIBECK, DELAY}, bar=DETECT, accepted=holder, failed={}
+        others, (), (holder, rival), established={STRIBECK, ASYMMETRY}, bar=DETECT, accepted=holder, failed={}
     )
     place = Place(others, holder, contest)
     with ThreadPoolExecutor(1) as pool:
@@ -183,6 +183,43 @@ def test_a_place_is_contested_anew_where_the_others_had_ended_in_a_wrong_optimum
     assert [place.holder.effect for place in found] == [STRIBECK, DELAY]
     assert all((place not in old) == is_new for place in found)
     assert all((place.holder.evidence_gain == gain) == is_new for place in found)
+
+
+@pytest.mark.parametrize("foretells", [True, False])
+def test_a_lead_that_foretells_nothing_better_makes_a_tie(
+    foretells: bool, trial: Callable[..., Trial], nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not, as before, a rival without a chance."""
+    monkeypatch.setattr(rivals, "_without", lambda *args: nominal)
+    monkeypatch.setattr(rivals.Trial, "of", classmethod(lambda cls, effect, *models: trial(effect, 100.0)))
+    monkeypatch.setattr(rivals, "predicts_better", lambda *args: foretells)
+    shop: Any = SimpleNamespace(
+        screen_all=lambda *args: [],
+        refit_all=lambda *args, incumbent, **kw: Refitted([trial(DELAY, 180.0), incumbent], {}),
+    )
+    fitter: Any = SimpleNamespace(left_by=lambda model: None)
+    (place,) = rivals.contest_each_place(fitter, replace(nominal, added=(STRIBECK,)), {}, shop)
+    rival = place.rival()
+    assert rival is not None
+    assert rival.evidence_gain == (180.0 if foretells else 100.0)
+    assert place.round.probability[DELAY] == pytest.approx(1.0 if foretells else 0.5, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("rival", "lead", "takes"), [(DELAY, 0.0, True), (DELAY, -1.0, False), (ASYMMETRY, 0.0, False)]
+)
+def test_a_rival_that_says_as_much_with_fewer_parameters_takes_the_place(
+    rival: str, lead: float, takes: bool, trial: Callable[..., Trial], fitter: Fitter, nominal: Fitted
+) -> None:
+    """Stribeck friction and an asymmetry have two parameters each, a delay has one."""
+    others = replace(nominal, added=("actuation:offset",))
+    holder, other = trial(STRIBECK, 100.0), trial(rival, 100.0 + lead)
+    contest = Round.of(
+        others, (), (holder, other), established={STRIBECK, rival}, bar=DETECT, accepted=holder, failed={}
+    )
+    full = replace(nominal, added=(STRIBECK, "actuation:offset", "load:offset"))
+    found = improve(fitter, full, [Place(others, holder, contest)], {}, SimpleNamespace())  # type: ignore[arg-type]
+    assert (found is not None and found.won is not None and found.won.holder is other) is takes
 
 
 def test_dropping_an_effect_keeps_the_values_of_all_else(fitter: Fitter, nominal: Fitted) -> None:

@@ -1,18 +1,25 @@
 """The screen of candidates: most promising first, started at a shape of its grid."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tendonlab as tl
 from tendonlab import _core
+from tendonlab.blind.rig import draw_rig
+from tendonlab.blind.strength import Strength
+from tendonlab.blind.systems import SYSTEMS
+from tendonlab.blind.write import record, write_dataset
 from tendonlab.diagnosis.search import screen
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Fitter
 from tendonlab.papers import s2
@@ -34,6 +41,29 @@ def test_fits_start_at_a_multiple_of_the_typical_shape(
     (start,) = screen.screen(fitter, nominal, "joint:stribeck").starts
     typical = start_of(nominal.system, "joint:stribeck", fitter.case.scales)
     assert start["joint_stribeck_velocity"] == pytest.approx(3.0 * typical["joint_stribeck_velocity"])
+
+
+@pytest.mark.cpu(20)  # a rig is drawn here
+def test_a_long_delay_starts_near_where_it_is(tmp_path: Path) -> None:
+    """Where a sheath's friction jumps, the slope at no delay tells nothing of 60 ms."""
+    rig = draw_rig(
+        np.random.default_rng(3), effect="", kind="parameters_only", system=SYSTEMS["bowden_pair"], excitation="rich"
+    )
+    still = Strength(
+        amplitude=0.0, gap_noise=0.0, nominal_gap_noise=0.0, floor=np.zeros(1), limited=False, met=True, separation={}
+    )
+    write_dataset(rig, record([rig], [still])[0], tmp_path / "rig", name="rig", description="")
+    dataset = tl.load(tmp_path / "rig")
+    late = [_later(experiment, "output_torque", 0.06) for experiment in dataset.experiments]
+    case = make_case(replace(dataset, experiments=tuple(late)))
+    fitter = Fitter(case, white([20.0 * sd for sd in case.noise]), _core.Cancel())
+    (start,) = screen.screen(fitter, fitter.fit(case.system), "sensor.output_torque:delay").starts
+    assert start["sensor.output_torque_delay"] == pytest.approx(0.06, rel=0.3)
+
+
+def _later(experiment: tl.Experiment, name: str, delay: float) -> tl.Experiment:
+    time, signal = experiment.data.index.to_numpy(), experiment.data[name].to_numpy()
+    return replace(experiment, data=experiment.data.assign(**{name: np.interp(time - delay, time, signal)}))
 
 
 def test_a_whole_friction_is_always_refitted_from_several_first_shapes() -> None:

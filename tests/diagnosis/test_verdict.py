@@ -40,7 +40,7 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "signs", [{"trained": 1.5 * FAR_TRAINED}, {"followed": 2.0 * FOLLOWED}, {"scattered": 1.5 * FAR_SCATTERED}]
+    "signs", [{"trained": 1.5 * FAR_TRAINED}, {"patterned": 2.0 * FOLLOWED}, {"scattered": 1.5 * FAR_SCATTERED}]
 )
 def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(signs: dict[str, float]) -> None:
     near = Levels(nominal=1e4, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False)
@@ -259,7 +259,7 @@ def test_what_explains_a_part_only_may_imitate_the_unknown(repeated: bool, proba
     assert selected(explained=1.0, repeated=repeated).effects["a"] > 0.95
 
 
-@pytest.mark.parametrize("signs", [{"trained": 1.2 * FAR_TRAINED}, {"followed": 1.2 * FOLLOWED}])
+@pytest.mark.parametrize("signs", [{"trained": 1.2 * FAR_TRAINED}, {"patterned": 1.2 * FOLLOWED}])
 def test_what_selected_effects_leave_must_be_noise(signs: dict[str, float]) -> None:
     """A motor that fades looks like a gain error, which explains most of the held-out gap and leaves no noise."""
     levels = Levels(nominal=50.0, tuned=20.0, refitted=20.0, explained=0.9, left=3.0, repeated=False)

@@ -1,7 +1,9 @@
-"""Whether what a model leaves follows the motion, or drifts along every run: noise of a sensor does neither, and what
-the model lacks often does."""
+"""Whether what a model leaves follows the motion, drifts along every run, or rings: noise of a sensor does none of
+these, and what the model lacks often does."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,14 +19,25 @@ RIDGE = 0.02  # prior weight of each cell, of an even share of the samples
 
 FAR_TRAINED = 8.0  # mean square over what the sensors and run-to-run friction may leave, beyond which it is no noise
 FAR_SCATTERED = 4.0  # mean square of run-to-run factors over what is plausible: beyond twice that they are no noise
-FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
+FOLLOWED = 0.2  # share of the residual that follows the motion, drifts or rings, beyond which it is no noise
+BAND, NUM_BANDS = 0.2, 60  # half width of a band of frequencies, of its middle, and how many are looked at
+LEAST_PERIODS = 10.0  # of the lowest band in the shortest run: fewer hardly fill a band
+DRIVEN = 0.02  # share of the motion, or of its sign, in such a band, beyond which friction alone fills it
 
 
 def may_be_noise(case: Case, model: Fitted) -> bool:
     """Whether nothing in what a model leaves tells that anything is missing, where nothing repeats."""
     if model.over_scatter(len(case.scatter)) >= FAR_TRAINED or scattered(case, model) >= FAR_SCATTERED:
         return False
-    return followed(case, model) < FOLLOWED
+    return patterned(case, model) < FOLLOWED
+
+
+def patterned(case: Case, model: Fitted) -> float:
+    """Largest share of the mean square residual of an output in which there is a pattern: it follows the motion, drifts
+    along every run, or rings."""
+    runs = [case.run(i, model.system, own, ports=True) for i, own in zip(case.train, model.initial, strict=True)]
+    residuals = [run["outputs"] - case.prepared[i].measured for i, run in zip(case.train, runs, strict=True)]
+    return max(_followed(case, runs, residuals), _ringing(case, runs, residuals))
 
 
 def scattered(case: Case, model: Fitted) -> float:
@@ -36,16 +49,14 @@ def scattered(case: Case, model: Fitted) -> float:
     return float(np.max(np.mean(np.square(factors / RUN_TO_RUN_UNKNOWN), axis=0)))
 
 
-def followed(case: Case, model: Fitted) -> float:
+def _followed(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: Sequence[np.ndarray]) -> float:
     """Largest share of the mean square residual of an output that a map over direction and position of a port, or over
     its direction and the time since the run began, foretells in experiments other than those that it was learnt from; 0
     where maps mislead, and of a single experiment."""
-    if len(case.train) < 2:
+    if len(runs) < 2:
         return 0.0
     times = [np.asarray(case.prepared[i].core.time) for i in case.train]
     times = [time - time[0] for time in times]
-    runs = [case.run(i, model.system, own, ports=True) for i, own in zip(case.train, model.initial, strict=True)]
-    residuals = [run["outputs"] - case.prepared[i].measured for i, run in zip(case.train, runs, strict=True)]
     shares = [0.0]
     for port in range(len(case.system.info.ports)):
         velocities, positions = ([np.asarray(run["ports"])[port][k] for run in runs] for k in (0, 1))
@@ -54,6 +65,50 @@ def followed(case: Case, model: Fitted) -> float:
         for cells in (_cells(velocities, positions, NUM_KNOTS), _cells(velocities, times, NUM_TIMES)):
             shares += [_foretold(cells, [r[c] for r in residuals]) for c in case.measured]
     return max(shares)
+
+
+def _ringing(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: Sequence[np.ndarray]) -> float:
+    """Largest share of the mean square residual of an output in one narrow band of frequencies beyond what the bands
+    beside it hold, in most experiments, where neither the motion nor its sign has such a band: a resonance that the
+    model lacks, whatever excites it."""
+    times = [np.asarray(case.prepared[i].core.time) for i in case.train]
+    lowest = LEAST_PERIODS / min(time[-1] - time[0] for time in times)
+    highest = 0.5 / max(np.median(np.diff(time)) for time in times) / (1.0 + 3.0 * BAND)
+    if lowest >= highest:
+        return 0.0
+    middle = np.geomspace(lowest, highest, NUM_BANDS)
+
+    def beyond(signals: Sequence[np.ndarray]) -> np.ndarray:
+        return _beyond_neighbours(middle, times, signals)
+
+    shares = np.max([beyond([r[c] for r in residuals]) for c in case.measured], axis=0)
+    for port in range(len(case.system.info.ports)):
+        velocities = [np.asarray(run["ports"])[port][0] for run in runs]
+        driven = np.maximum(beyond(velocities), beyond([np.sign(v) for v in velocities]))
+        shares = np.where(driven > DRIVEN, 0.0, shares)
+    return float(np.max(shares, initial=0.0))
+
+
+def _beyond_neighbours(middle: np.ndarray, times: Sequence[np.ndarray], signals: Sequence[np.ndarray]) -> np.ndarray:
+    """Share of the power of signals, one of each experiment, in the band about each frequency, beyond the fuller one of
+    its neighbours: the median over experiments, or their mean if that is less."""
+    edges = middle * (1.0 + BAND * np.array([[-3.0], [-1.0], [1.0], [3.0]]))
+    power = [_power_below(edges, time, signal) for time, signal in zip(times, signals, strict=True)]
+    below, within, above = np.moveaxis(np.diff(power, axis=1), 1, 0)
+    more = within - np.maximum(below, above)
+    return np.asarray(np.minimum(np.median(more, axis=0), np.mean(more, axis=0)))
+
+
+def _power_below(frequencies: np.ndarray, time: np.ndarray, signal: np.ndarray) -> np.ndarray:
+    """Share of the power of a signal below each of the frequencies, Hz; 0 of one that was not measured."""
+    there = np.isfinite(signal)
+    if not there.any():
+        return np.zeros_like(frequencies)
+    even = np.linspace(time[0], time[-1], len(time))
+    filled = np.interp(even, time[there], signal[there])
+    power = np.square(np.abs(np.fft.rfft((filled - filled.mean()) * np.hanning(len(even)))))
+    total = max(float(power.sum()), np.finfo(float).tiny)
+    return np.interp(frequencies, np.fft.rfftfreq(len(even), even[1] - even[0]), np.cumsum(power) / total)
 
 
 def _cells(velocities: list[np.ndarray], over: list[np.ndarray], num_knots: int) -> list[np.ndarray]:

@@ -217,11 +217,11 @@ def no_noise(levels: Levels) -> list[str]:
             f"Tuning alone needs a parameter {levels.strained:.0f} stated standard deviations away from its stated "
             "value, so something else is missing. If that standard deviation was stated too small, tuning may be all."
         )
-    if levels.followed >= FOLLOWED:
+    if levels.patterned >= FOLLOWED:
         found.append(
-            "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "
-            "over direction and time since the start, learnt from other experiments, predicts "
-            f"{100 * levels.followed:.0f} % of its mean square. So it is not noise."
+            "The remaining error has a pattern. It follows the motion or drifts alike in every run, so that a map over "
+            "direction and place or time, learnt from other experiments, predicts it; or it rings in one narrow band "
+            f"of frequencies. The pattern holds {100 * levels.patterned:.0f} % of its mean square. So it is not noise."
         )
     if levels.trained >= FAR_TRAINED:
         found.append(

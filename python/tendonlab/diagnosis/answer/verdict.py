@@ -39,8 +39,8 @@ class Levels:
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
-    run-to-run friction may leave, and `followed`: the share of that which follows the motion or drifts; and, where
-    nothing was selected, `scattered`: by how much friction differs from run to run. `strained`: where nothing was
+    run-to-run friction may leave, and `patterned`: the share of that which follows the motion, drifts or rings; and,
+    where nothing was selected, `scattered`: by how much friction differs from run to run. `strained`: where nothing was
     selected, by how many stated standard deviations tuning pulled the parameter that it pulled farthest. `drifted`: the
     chance of a trend of friction over the session, 1 where there is none that matters."""
 
@@ -52,7 +52,7 @@ class Levels:
     repeated: bool
     whitened: float = np.inf
     trained: float = 1.0
-    followed: float = 0.0
+    patterned: float = 0.0
     scattered: float = 0.0
     strained: float = 0.0
     drifted: float = 1.0
@@ -141,7 +141,7 @@ def _chance_room(levels: Levels) -> float:
 def _noise_room(levels: Levels) -> float:
     """Share by which what the final model leaves of the training experiments keeps clear of what is no noise, where
     nothing repeats."""
-    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - levels.followed / FOLLOWED)
+    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - levels.patterned / FOLLOWED)
 
 
 def _step(x: float) -> float:

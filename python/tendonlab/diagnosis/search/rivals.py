@@ -12,7 +12,14 @@ from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effe
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
 from tendonlab.diagnosis.search.swap import extended
-from tendonlab.diagnosis.search.trial import DETECT, FURTHER_SHARE, Trial, bar_for_further_effect, is_no_shape
+from tendonlab.diagnosis.search.trial import (
+    DETECT,
+    FURTHER_SHARE,
+    Trial,
+    bar_for_further_effect,
+    is_no_shape,
+    plainest_first,
+)
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -88,7 +95,8 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
 
 def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: Place | None) -> Place:
     """The contest for one place, or the `stored` one, unless the other effects had ended in a wrong optimum: then they
-    do without this effect nearly as well, once they start where they ended with it."""
+    do without this effect nearly as well, once they start where they ended with it. A rival whose lead foretells
+    no other block better is as good as the holder, no better."""
     rest = tuple(name for name in base.added if name != effect)
     others = _without(fitter, base, effect, rest)
     holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
@@ -99,13 +107,13 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     screened = [] if others.exploded else shop.screen_all(under, others, label)  # nothing follows from such slopes
     promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
     refitted = shop.refit_all(under, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
-    trials = refitted.trials
 
-    def establishes(t: Trial) -> bool:
-        ahead = _clearly_better(t, holder)
-        return DETECT.passed(t) and (not ahead or predicts_better(fitter, base, t.fitted))
+    def no_further_than_it_foretells(t: Trial) -> Trial:
+        in_doubt = _clearly_better(t, holder) and not predicts_better(fitter, base, t.fitted)
+        return replace(t, evidence_gain=holder.evidence_gain) if in_doubt else t
 
-    established = {t.effect for t in trials if establishes(t)}
+    trials = [no_further_than_it_foretells(t) for t in refitted.trials]
+    established = {t.effect for t in trials if DETECT.passed(t)}
     failed = refitted.failed
     round_ = Round.of(others, screened, trials, established=established, bar=DETECT, accepted=holder, failed=failed)
     return Place(others, holder, round_)
@@ -133,7 +141,7 @@ def improve(
         return Improved(min(needless, key=lambda place: place.holder.evidence_gain).others)
     claims = [(place, rival) for place in contested if (rival := place.rival()) is not None]
     for place, rival in sorted(claims, key=lambda claim: -claim[1].fitted.evidence):
-        if _clearly_better(rival, place.holder):
+        if _clearly_better(rival, place.holder) or _plainer(rival, place.holder):
             return Improved(rival.fitted, place.with_rival(rival))
     for _, rival in claims if len(base.added) < MAX_EFFECTS else []:
         pair = _rival_and_one_more(fitter, base, rival, places, shop)
@@ -159,6 +167,12 @@ def _rival_and_one_more(fitter: Fitter, base: Fitted, rival: Trial, places: Plac
 
 def _clearly_better(rival: Trial, holder: Trial) -> bool:
     return rival.evidence_gain - holder.evidence_gain > DETECT.evidence
+
+
+def _plainer(rival: Trial, holder: Trial) -> bool:
+    """Whether a rival of as much evidence says the same with fewer parameters."""
+    as_much = rival.evidence_gain >= holder.evidence_gain
+    return as_much and plainest_first([holder, rival], {rival.effect})[0] is rival
 
 
 def drop_effects(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> System:

@@ -22,6 +22,7 @@ from tendonlab.simulation.system import System
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 WHOLE_SHAPES = (0.3, 1.0, 3.0)  # of the typical first shape of a whole friction
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
+DELAYS = (*AMPLITUDES, 2.0, 8.0)  # the same of a delay: where outputs jump, a slope tells nothing of one that is long
 INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
 
 
@@ -104,7 +105,7 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
         for factor in (SHAPES if shapes else (1.0,))
         for shaped in ({name: start[name] * factor for name in shapes[:1]},)
         for p in rows if p.amplitude
-        for amplitude in AMPLITUDES
+        for amplitude in (DELAYS if p.dimension == "time" else AMPLITUDES)
     ]  # fmt: skip
     seen = _residuals_with(fitter, base, effect, [values for _, _, values in tried])
     scores = [_score(case, base, *of, r) for of, r in zip(tried, seen, strict=True) if not isinstance(r, str)]

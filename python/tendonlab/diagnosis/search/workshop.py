@@ -14,6 +14,7 @@ from tendonlab.diagnosis.search.delays import trouble_with_delays
 from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
+from tendonlab.diagnosis.search.stiction import trouble_with_stiction
 from tendonlab.diagnosis.search.trial import Trial, counted_alike
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
@@ -118,7 +119,7 @@ def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) ->
         started = candidate if candidate.far_behind else with_whole_shares(fitter, base, candidate)
         fit = refit(fitter, base, started, pace=pace)
         told = (fitter.case, fit, candidate.effect)
-        trouble = trouble_with_bristles(*told) or trouble_with_delays(*told)
+        trouble = trouble_with_bristles(*told) or trouble_with_delays(*told) or trouble_with_stiction(*told[1:])
     except (NumericalError, ParameterError) as reason:
         return Failed(candidate.effect, str(reason))
     return Failed(candidate.effect, trouble) if trouble else Trial.of(candidate.effect, fit, base)

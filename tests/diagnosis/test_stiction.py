@@ -1,0 +1,31 @@
+"""Static friction far above the kinetic one is no Stribeck effect."""
+
+from typing import Any
+
+import pytest
+
+from tendonlab.diagnosis.search.stiction import MOST, trouble_with_stiction
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import Fitter
+
+NAME = "joint:stribeck"
+
+
+def sticky(fitter: Fitter, ratio: float, coulomb: float) -> Fitted:
+    """The bundled rig whose joint has so many times its `coulomb` friction at rest."""
+    system = fitter.case.system.with_parameters({"joint_coulomb": coulomb})
+    excess = {"joint_static_excess": (ratio - 1.0) * coulomb, "joint_stribeck_velocity": 0.05}
+    return fitter.fit(system.with_effects({NAME: excess}), added=(NAME,), solve=False)
+
+
+@pytest.mark.parametrize(("ratio", "is_told"), [(0.9 * MOST, True), (1.1 * MOST, False)])
+def test_friction_at_rest_is_some_times_that_in_motion(fitter: Fitter, ratio: float, is_told: bool) -> None:
+    trouble = trouble_with_stiction(sticky(fitter, ratio, 0.03), NAME)
+    assert (trouble == "") is is_told
+    assert is_told or f"{1.1 * MOST:.2g} times the kinetic one" in trouble
+
+
+def test_other_effects_and_elements_have_none(fitter: Fitter, nominal: Any) -> None:
+    sliding = sticky(fitter, 2.0 * MOST, 0.03)
+    assert trouble_with_stiction(sliding, "joint:asymmetry") == ""
+    assert trouble_with_stiction(nominal, "joint:coulomb") == ""
