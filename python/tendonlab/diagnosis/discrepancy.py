@@ -108,7 +108,7 @@ def _power_below(frequencies: np.ndarray, time: np.ndarray, signal: np.ndarray) 
     filled = np.interp(even, time[there], signal[there])
     power = np.square(np.abs(np.fft.rfft((filled - filled.mean()) * np.hanning(len(even)))))
     total = max(float(power.sum()), np.finfo(float).tiny)
-    return np.interp(frequencies, np.fft.rfftfreq(len(even), even[1] - even[0]), np.cumsum(power) / total)
+    return np.asarray(np.interp(frequencies, np.fft.rfftfreq(len(even), even[1] - even[0]), np.cumsum(power) / total))
 
 
 def _cells(velocities: list[np.ndarray], over: list[np.ndarray], num_knots: int) -> list[np.ndarray]:
