@@ -98,6 +98,33 @@ def test_a_sure_gain_on_held_out_experiments_confirms_a_small_effect(
     assert bool(confirm.confirmed(found(FIRST), shop(10.0, 9.5, gain=gain)).selected) is kept
 
 
+@pytest.mark.parametrize(("gain", "kept"), [(1.9, False), (2.1, True)])
+def test_where_nothing_is_left_to_remove_a_sure_gain_alone_confirms(
+    found: Callable[..., Search], shop: Callable[..., Any], gain: float, kept: bool
+) -> None:
+    assert bool(confirm.confirmed(found(FIRST), shop(0.9, 0.9, gain=gain)).selected) is kept
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize(("relieved", "kept"), [(40.0, True), (29.0, False)])
+def test_beliefs_confirm_what_gains_mainly_by_them(
+    found: Callable[..., Search],
+    shop: Callable[..., Any],
+    repeated: bool,
+    relieved: float,
+    kept: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """30 nats in any case, and a quarter of what the effect gains."""
+    monkeypatch.setattr(confirm, "relief", lambda *models: relieved)
+    search = found(FIRST, repeated=repeated)
+    assert bool(confirm.confirmed(search, shop(10.0, 10.0, gain=-1.0)).selected) is kept
+    (won,) = search.rounds
+    assert won.accepted is not None
+    strong = replace(search, rounds=(replace(won, accepted=replace(won.accepted, left_out_gain=170.0)),))
+    assert confirm.confirmed(strong, shop(10.0, 10.0, gain=-1.0)).selected == ()
+
+
 @pytest.mark.parametrize("repeated", [False, True])
 @pytest.mark.parametrize(("after", "kept"), [(1.1, True), (1.45, True), (1.5, False), (1.9, False), (2.01, True)])
 def test_an_effect_beside_others_must_remove_more(

@@ -170,13 +170,15 @@ def test_a_rival_to_which_no_effect_can_be_added_makes_no_pair(round_: Any, monk
 
 
 @pytest.mark.parametrize(
-    ("gain", "predicts", "established"),
-    [(95.0, False, True), (115.0, False, False), (115.0, True, True), (5.0, True, False)],
+    ("gain", "predicts", "counted"),
+    [(95.0, False, 95.0), (115.0, False, 100.0), (115.0, True, 115.0), (5.0, True, None)],
 )
-def test_a_rival_far_ahead_is_established_only_by_halves(
-    gain: float, predicts: bool, established: bool, monkeypatch: pytest.MonkeyPatch
+def test_a_rival_is_as_far_ahead_as_halves_say(
+    gain: float, predicts: bool, counted: float | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rivals, "replace", lambda base, **_: base)
+    """`counted`: the evidence with which it is established; the holder has 100."""
+    changed = rivals.replace
+    monkeypatch.setattr(rivals, "replace", lambda of, **to: changed(of, **to) if isinstance(of, Trial) else of)
     monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
     monkeypatch.setattr(Trial, "of", lambda effect, fitted, others: trial(effect, 100.0, "b"))
     monkeypatch.setattr(rivals, "predicts_better", lambda *_: predicts)
@@ -186,7 +188,8 @@ def test_a_rival_far_ahead_is_established_only_by_halves(
     (found,) = contest_each_place(fitter, model("holder"), {}, shop)
     assert shop.refitted == ["p", "q", "r"]  # three, without the holder
     assert found.others.added == ()
-    assert ("p" in found.round.established) == established
+    assert ("p" in found.round.established) == (counted is not None)
+    assert counted in (None, next(t.evidence_gain for t in found.round.trials if t.effect == "p"))
     assert found.round.accepted is found.holder
 
 

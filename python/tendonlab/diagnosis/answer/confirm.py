@@ -23,6 +23,7 @@ FURTHER = 0.6  # the same of an effect beside others: one that only mends the fo
 NEAR = 4.0  # mean square over the floor with it, beyond which more is missing and that share tells nothing
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
+MAINLY = 0.25  # share of its gain that beliefs must make up, to confirm an effect without held-out experiments
 
 
 def confirmed(search: Search, shop: Workshop) -> Search:
@@ -39,7 +40,7 @@ def _is_refuted(search: Search) -> bool:
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     won, is_first = search.rounds[len(search.steps) - 1].accepted, len(search.selected) == 1
     assert won is not None  # every step was won
-    is_believed = relief(*pair) > CLEAR.evidence  # what beliefs confirm needs no experiment
+    is_believed = relief(*pair) > max(CLEAR.evidence, MAINLY * won.left_out_gain)  # this needs no experiment
     if not case.test or (is_first and is_believed):
         return False
     try:
@@ -57,4 +58,4 @@ def _is_refuted(search: Search) -> bool:
     if fitter.floor.repeated:
         foretold = CARRIED * won.left_out_gain * len(case.test) / len(case.train)
         return gain["mean"] < max(0.0, min(SURE * gain["se"], foretold))
-    return share is not None and share < CONFIRMED and gain["mean"] < SURE * gain["se"]
+    return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]

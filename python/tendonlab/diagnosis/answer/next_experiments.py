@@ -133,7 +133,7 @@ def _run(case: Case, of: Fitted, motion: Motion, loop: Loop, time: np.ndarray) -
             reference=smooth(instants(), path),
             disturbance=_core.Signal(),
         ),
-        position=[path[0] * s / shape[axis] for s in shape],
-        velocity=[0.0] * len(shape),
+        position=[path[0] * s / shape[axis] for s in shape[: system.info.dof]],  # beyond, a system knows its own state
+        velocity=[0.0] * system.info.dof,
     )
     return dict(_core.simulate(system.kind, system.values(), system.active(keep_zero=True), core, [], case.settings()))

@@ -14,6 +14,7 @@ from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import (
     DETECT,
+    LITTLE,
     Bar,
     Trial,
     bar_for_further_effect,
@@ -30,6 +31,7 @@ from tendonlab.fitting.problem import Fitter
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
+FORM = 0.01  # the same, of the most that an effect gains: of 60 right ones none was ahead by less than 0.04 of that
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
@@ -74,6 +76,7 @@ class Round:
     ) -> Round:
         """The round of `trials`, best first, of which one, or none, is accepted."""
         temperature = TEMPERATURE * max([1.0, min((t.fitted.whitened_square for t in trials), default=1.0)])
+        temperature = max([temperature, *(FORM * t.evidence_gain for t in trials if t.effect in established)])
         probability = probabilities(trials, established, bar, temperature)
         return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, failed)
 
@@ -154,14 +157,16 @@ def _worth_adding(
     fitter: Fitter, base: Fitted, trials: Sequence[Trial], *, further: bool, largest_gain: float = 0.0
 ) -> bool:
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
-    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly.
+    repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly
+    and remove a tenth of what lies above the floor.
     With repeats, a further one must be no error of a shape. Without, it must explain enough, or leave what may be
     noise. Near the floor, beyond the first effect and where it explains little, it must predict experiments that it
     was not fitted to."""
     near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
     if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
-    is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and _evidence_counts(fitter, base)
+    is_little = base.mean_square - first.mean_square < LITTLE * (base.mean_square - 1.0)
+    is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and not is_little and _evidence_counts(fitter, base)
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
     if repeated and further and not is_no_shape(base, trials, largest_gain):
@@ -183,7 +188,7 @@ def probabilities(
 ) -> dict[str | None, float]:
     """Probability of each effect, and of no further effect (None): softmax of evidence over a temperature.
 
-    Raw evidence is over-confident. An effect that is not established ranks clearly behind None, and none counts more
+    Raw evidence is over-confident: what an effect explains hangs on its form, and that of the rig is another. An effect that is not established ranks clearly behind None, and none counts more
     than the first one, to which it may have given way."""
     gains: dict[str | None, float] = {None: bar.evidence}
     for t in trials:
