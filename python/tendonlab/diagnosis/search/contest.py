@@ -188,8 +188,9 @@ def probabilities(
 ) -> dict[str | None, float]:
     """Probability of each effect, and of no further effect (None): softmax of evidence over a temperature.
 
-    Raw evidence is over-confident: what an effect explains hangs on its form, and that of the rig is another. An effect that is not established ranks clearly behind None, and none counts more
-    than the first one, to which it may have given way."""
+    Raw evidence is over-confident: what an effect explains hangs on its form, and that of the rig is another. An effect
+    that is not established ranks clearly behind None, and none counts more than the first one, to which it may have
+    given way."""
     gains: dict[str | None, float] = {None: bar.evidence}
     for t in trials:
         most = trials[0].evidence_gain

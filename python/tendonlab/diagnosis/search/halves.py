@@ -20,8 +20,8 @@ MANY = 8  # scores of which the least and the largest may be left out
 
 
 def predicts_better(fitter: Fitter, base: Fitted, extended: Fitted) -> bool:
-    """Whether `extended` predicts each half of the samples, fitted to the other half, better than `base`: all in all, or
-    without the experiment that gains least and the one that gains most. One run may stick elsewhere by chance.
+    """Whether `extended` predicts each half of the samples, fitted to the other half, better than `base`: all in all,
+    or without the experiment that gains least and the one that gains most. One run may stick elsewhere by chance.
 
     A fit that cannot be simulated predicts nothing: False."""
     base = base.counted(extended.shares)
