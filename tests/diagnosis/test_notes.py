@@ -89,14 +89,17 @@ def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
 
 def test_an_error_that_is_no_noise_is_explained() -> None:
     near = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, patterned=0.1)
-    assert notes.no_noise(near) == []
-    (follows,) = notes.no_noise(replace(near, patterned=0.45))
+    assert notes.no_noise(near, selected=False) == []
+    (follows,) = notes.no_noise(replace(near, patterned=0.45), selected=False)
     assert "holds 45 % of its mean square" in follows
-    (large,) = notes.no_noise(replace(near, trained=16.0))
+    (large,) = notes.no_noise(replace(near, trained=16.0), selected=False)
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
-    (strained,) = notes.no_noise(replace(near, strained=37.2))
-    assert "37 stated standard deviations away" in strained
-    (differs,) = notes.no_noise(replace(near, scattered=6.25))
+    (strained,) = notes.no_noise(replace(near, strained=37.2), selected=False)
+    assert "Tuning alone needs a parameter 37 stated standard deviations away" in strained
+    assert notes.no_noise(replace(near, strained=12.0), selected=True) == []
+    (beside,) = notes.no_noise(replace(near, strained=37.2), selected=True)
+    assert "Even with the selected effects" in beside
+    (differs,) = notes.no_noise(replace(near, scattered=6.25), selected=False)
     assert "friction that differs by 5 % from run to run" in differs
 
 

@@ -13,6 +13,7 @@ from tendonlab.diagnosis.answer.verdict import (
     PARTLY,
     PARTLY_ASSUMED,
     STRAINED,
+    STRAINED_BESIDE,
     Levels,
     Verdict,
     _group,
@@ -259,9 +260,12 @@ def test_what_explains_a_part_only_may_imitate_the_unknown(repeated: bool, proba
     assert selected(explained=1.0, repeated=repeated).effects["a"] > 0.95
 
 
-@pytest.mark.parametrize("signs", [{"trained": 1.2 * FAR_TRAINED}, {"patterned": 1.2 * FOLLOWED}])
+@pytest.mark.parametrize(
+    "signs", [{"trained": 1.2 * FAR_TRAINED}, {"patterned": 1.2 * FOLLOWED}, {"strained": 1.5 * STRAINED_BESIDE}]
+)
 def test_what_selected_effects_leave_must_be_noise(signs: dict[str, float]) -> None:
-    """A motor that fades looks like a gain error, which explains most of the held-out gap and leaves no noise."""
+    """A motor that fades looks like a gain error, which explains most of the held-out gap and leaves no noise. A
+    tension in another unit looked like its bias, beside a wrap angle 287 sd from what was stated."""
     levels = Levels(nominal=50.0, tuned=20.0, refitted=20.0, explained=0.9, left=3.0, repeated=False)
     rounds = (contest((), "a", a=0.99, none=0.01),)
     assert decide(rounds, ("a",), levels).verdict == "effect"

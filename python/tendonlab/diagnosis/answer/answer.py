@@ -83,7 +83,7 @@ def answer(
             *trouble,
             *notes.not_asked(case, search, library),
             *notes.on_the_held_out(weighed, shown, near, search.selected),
-            *notes.no_noise(levels),
+            *notes.no_noise(levels, selected=bool(search.selected)),
         ),
         units=notes.units(case),
         overlays=overlays(shown),
@@ -139,7 +139,7 @@ def _levels(
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
         patterned=patterned(case, final) if doubtful else 0.0,
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
-        strained=0.0 if search.selected else strain(case, final),
+        strained=strain(case, final),
         drifted=drift.chance if drift and drift.tells else 1.0,
     )
     return outlier.left_out(levels, nominal) if outlier else levels

@@ -12,7 +12,7 @@ from tendonlab.diagnosis.answer import where
 from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
-from tendonlab.diagnosis.answer.verdict import STRAINED, Levels
+from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.select import Search
@@ -208,14 +208,15 @@ def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, e
     return found
 
 
-def no_noise(levels: Levels) -> list[str]:
-    """Warnings where what the refitted simulator leaves cannot be noise although nothing repeats, or where it needs
-    parameters that were stated to be elsewhere."""
+def no_noise(levels: Levels, *, selected: bool) -> list[str]:
+    """Warnings where what the final model leaves cannot be noise although nothing repeats, or where it needs parameters
+    that were stated to be elsewhere. `selected`: whether it has effects of its own."""
     found = []
-    if levels.strained >= STRAINED:
+    if levels.strained >= (STRAINED_BESIDE if selected else STRAINED):
         found.append(
-            f"Tuning alone needs a parameter {levels.strained:.0f} stated standard deviations away from its stated "
-            "value, so something else is missing. If that standard deviation was stated too small, tuning may be all."
+            f"{'Even with the selected effects the fit' if selected else 'Tuning alone'} needs a parameter "
+            f"{levels.strained:.0f} stated standard deviations away from its stated value, so something else is "
+            "missing. If that standard deviation was stated too small, nothing else may be."
         )
     if levels.patterned >= FOLLOWED:
         found.append(

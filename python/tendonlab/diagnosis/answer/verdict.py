@@ -25,6 +25,7 @@ AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enoug
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
 SOFT, SAME_GROUP = 0.05, 0.2
+STRAINED_BESIDE = 20.0  # the same beside effects: all of five that were strained further were wrong or but a part
 STEEP = 5.0  # how fast strained beliefs turn the verdict
 
 
@@ -40,9 +41,9 @@ class Levels:
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
     run-to-run friction may leave, and `patterned`: the share of that which follows the motion, drifts or rings; and,
-    where nothing was selected, `scattered`: by how much friction differs from run to run. `strained`: where nothing was
-    selected, by how many stated standard deviations tuning pulled the parameter that it pulled farthest. `drifted`: the
-    chance of a trend of friction over the session, 1 where there is none that matters."""
+    where nothing was selected, `scattered`: by how much friction differs from run to run. `strained`: by how many
+    stated standard deviations the fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of
+    friction over the session, 1 where there is none that matters."""
 
     nominal: float
     tuned: float
@@ -85,7 +86,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     whole = max(_whole(levels), NO_GAP - levels.left)
-    spare = min(_noise_room(levels), whole, _chance_room(levels))
+    spare = min(_noise_room(levels), whole, _chance_room(levels), _belief_room(levels, STRAINED_BESIDE))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
@@ -122,15 +123,15 @@ def _whole(levels: Levels) -> float:
 
 def _room(levels: Levels) -> float:
     """By how much an error may be noise; below 0 it is none."""
-    common = min(FAR - levels.refitted, _chance_room(levels), _belief_room(levels))
+    common = min(FAR - levels.refitted, _chance_room(levels), _belief_room(levels, STRAINED))
     if levels.repeated:
         return min(NEAR_FLOOR - levels.tuned, common)
     return min(SOFT, _noise_room(levels), FAR_SCATTERED - levels.scattered, common)
 
 
-def _belief_room(levels: Levels) -> float:
-    """By how much tuning may be all, by what was stated of the parameters; below 0 it is not."""
-    return STEEP * SOFT * float(np.log(STRAINED / max(levels.strained, 1e-9)))
+def _belief_room(levels: Levels, most: float) -> float:
+    """By how much tuning may be all beside what was selected, by what was stated of parameters; below 0 it is not."""
+    return STEEP * SOFT * float(np.log(most / max(levels.strained, 1e-9)))
 
 
 def _chance_room(levels: Levels) -> float:
