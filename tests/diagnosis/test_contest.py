@@ -88,6 +88,14 @@ def test_the_bar_of_a_further_effect_is_higher_where_runs_repeat() -> None:
     assert bar_for_further_effect(fitter_of(repeated=False)) == Bar(10.0, 3.0, doubted=True)
 
 
+def test_a_law_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
+    """However little is left: Stribeck friction of a joint whose shape is not the library's looks like the motor's."""
+    base: Any = SimpleNamespace(mean_square=3.0, added=("joint:stribeck",))
+    for effect, gain, no_shape in [("motor:stribeck", 900.0, False), ("motor:stribeck", 1100.0, True)]:
+        assert is_no_shape(base, [trial(effect, gain, mean_square=1.1)], 10_000.0) is no_shape
+    assert is_no_shape(base, [trial("motor:asymmetry", 200.0, mean_square=1.1)], 10_000.0)
+
+
 @pytest.mark.parametrize(
     ("gain", "largest", "left", "no_shape"),
     [
@@ -103,7 +111,7 @@ def test_a_further_effect_is_no_error_of_a_shape_where_it_gains_much_or_leaves_l
     gain: float, largest: float, left: float, no_shape: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
-    base: Any = SimpleNamespace(mean_square=3.0, runs=range(7))
+    base: Any = SimpleNamespace(mean_square=3.0, runs=range(7), added=("first",))
     trials = [trial("a", gain, mean_square=left), trial("b", 0.6 * gain, mean_square=2.95)]
     assert is_no_shape(base, trials, largest) == no_shape
     fitter = fitter_of(repeated=True)
@@ -183,7 +191,7 @@ def test_near_the_floor_and_beyond_the_first_effect_halves_decide(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
-    of: Any = SimpleNamespace(mean_square=base, runs=range(7))
+    of: Any = SimpleNamespace(mean_square=base, runs=range(7), added=())
     leader = trial("a", gain, lost=lost, mean_square=first)
     assert _worth_adding(fitter_of(repeated=True), of, [leader], further=further) == worth
 

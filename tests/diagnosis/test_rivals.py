@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import tendonlab as tl
 from tendonlab import _core
 from tendonlab.diagnosis.answer.verdict import Levels, decide, marginals
 from tendonlab.diagnosis.search import rivals, workshop
@@ -168,7 +169,7 @@ def test_a_place_is_contested_anew_where_the_others_had_ended_in_a_wrong_optimum
     gain: float, is_new: bool, trial: Callable[..., Trial], nominal: Fitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The others, started where they ended with the effect, do without it nearly as well: its contest meant nothing."""
-    monkeypatch.setattr(rivals, "_without", lambda *args: nominal)
+    monkeypatch.setattr(rivals, "refitted_without", lambda *args: nominal)
     monkeypatch.setattr(rivals.Trial, "of", classmethod(lambda cls, effect, *models: trial(effect, gain)))
     shop: Any = SimpleNamespace(
         screen_all=lambda *args: [], refit_all=lambda *args, incumbent, **kw: Refitted([incumbent], {})
@@ -190,7 +191,7 @@ def test_a_lead_that_foretells_nothing_better_makes_a_tie(
     foretells: bool, trial: Callable[..., Trial], nominal: Fitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not, as before, a rival without a chance."""
-    monkeypatch.setattr(rivals, "_without", lambda *args: nominal)
+    monkeypatch.setattr(rivals, "refitted_without", lambda *args: nominal)
     monkeypatch.setattr(rivals.Trial, "of", classmethod(lambda cls, effect, *models: trial(effect, 100.0)))
     monkeypatch.setattr(rivals, "predicts_better", lambda *args: foretells)
     shop: Any = SimpleNamespace(
@@ -229,6 +230,28 @@ def test_dropping_an_effect_keeps_the_values_of_all_else(fitter: Fitter, nominal
     left = drop_effects(fitter, replace(nominal, system=tuned, added=(STRIBECK, "actuation:offset")), [STRIBECK])
     assert STRIBECK not in left.effects
     assert left.parameters == {name: value for name, value in tuned.parameters.items() if name not in stribeck}
+
+
+def test_what_cannot_be_without_an_effect_goes_with_it(fitter: Fitter, nominal: Fitted) -> None:
+    """A bristle without dry friction ended diagnoses."""
+    bare = replace(fitter.case, system=_without_dry_friction(nominal.system))
+    effects = {
+        "joint:presliding": {"joint_bristle_stiffness": 50.0, "joint_bristle_damping": 0.1},
+        "actuation:offset": {"actuation_offset": 0.02},
+    }
+    system = bare.system.with_effects({"joint:coulomb": {"joint_coulomb": 0.1}}).with_effects(effects)
+    model = replace(nominal, system=system, added=("joint:presliding", "joint:coulomb", "actuation:offset"))
+    left = drop_effects(replace(fitter, case=bare), model, ["joint:coulomb"])
+    assert set(left.effects) - set(bare.system.effects) == {"actuation:offset"}
+    whole = drop_effects(replace(fitter, case=bare), model, [])  # in whatever order they were added
+    assert set(whole.effects) == set(system.effects)
+    assert whole.parameters == system.parameters
+
+
+def _without_dry_friction(system: tl.System) -> tl.System:
+    effects = tuple(name for name in system.effects if name != "joint:coulomb")
+    parameters = {name: value for name, value in system.parameters.items() if name != "joint_coulomb"}
+    return tl.System(system.kind, parameters=parameters, effects=effects)
 
 
 def test_progress_says_for_which_effect_candidates_are_screened(

@@ -179,10 +179,10 @@ def test_a_rival_is_as_far_ahead_as_halves_say(
     """`counted`: the evidence with which it is established; the holder has 100."""
     changed = rivals.replace
     monkeypatch.setattr(rivals, "replace", lambda of, **to: changed(of, **to) if isinstance(of, Trial) else of)
-    monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
+    monkeypatch.setattr(rivals, "refitted_without", lambda *_: model())
     monkeypatch.setattr(Trial, "of", lambda effect, fitted, others: trial(effect, 100.0, "b"))
     monkeypatch.setattr(rivals, "predicts_better", lambda *_: predicts)
-    fitter = repeated(settled=lambda fit: fit, fit=lambda system, added, initial: model(*added))
+    fitter = repeated()
     candidates = [screened("holder", 90.0), *(screened(name, 50.0) for name in "pqrs"), screened("weak", 2.0)]
     shop: Any = Shop(candidates, {"p": gain})
     (found,) = contest_each_place(fitter, model("holder"), {}, shop)
@@ -195,11 +195,10 @@ def test_a_rival_is_as_far_ahead_as_halves_say(
 
 def test_a_model_whose_derivatives_explode_names_no_rival(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rivals, "replace", lambda base, **_: base)
-    monkeypatch.setattr(rivals, "drop_effects", lambda *_: None)
+    monkeypatch.setattr(rivals, "refitted_without", lambda *_: model(exploded=True))
     monkeypatch.setattr(Trial, "of", lambda effect, fitted, others: trial(effect, 100.0))
-    fitter = repeated(settled=lambda fit: fit, fit=lambda system, added, initial: model(*added, exploded=True))
     shop: Any = Shop([screened("p", 50.0)], {"p": 95.0})
-    (found,) = contest_each_place(fitter, model("holder"), {}, shop)
+    (found,) = contest_each_place(repeated(), model("holder"), {}, shop)
     assert shop.refitted == []
     assert found.round.accepted is found.holder
 

@@ -21,6 +21,7 @@ SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
 MOST_ROUNDS, CLOSE = 40, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
 ROUNDS = 12  # of a robust regression
+MENDED = 0.9  # share of what an equation leaves of an experiment (rms) that its own lags must at most leave
 
 
 @dataclass(frozen=True)
@@ -71,9 +72,9 @@ def _gain(
     equation: Equation, logs: Logs, kept: np.ndarray, late: np.ndarray, share: np.ndarray, fit: Fit
 ) -> np.ndarray:
     """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each,
-    beyond what the middle experiment gains: one late sensor spoils the parameters of all. Nothing where friction in
-    presliding suits it as well. Where nothing moves by an equation, beyond what dry friction of its own brings:
-    friction that falls with speed is highest in a slow run."""
+    beyond what the middle experiment gains: one late sensor spoils the parameters of all. Nothing where they mend no
+    equation, or where friction in presliding suits it as well. Where nothing moves by an equation, beyond what dry
+    friction of its own brings: friction that falls with speed is highest in a slow run."""
     common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
@@ -83,7 +84,7 @@ def _gain(
     surprise = [np.log1p((f.residual / (fit.level * at.size)[:, None]) ** 2 / FREEDOM) for f in (without, fit)]
     nats = 0.5 * (FREEDOM + 1) * (share @ (surprise[0] - surprise[1]))
     gained = np.bincount(moved.run, nats, late.shape[1])
-    gained = np.maximum(gained - np.median(gained), 0.0)
+    gained = np.where(_mended(fit, without, moved.run, late.shape[1]), np.maximum(gained - np.median(gained), 0.0), 0.0)
     left = without.residual / (without.level * at.size * FREEDOM**0.5)[:, None]
     if equation.axes:
         bent = [_by_bristles(equation, moved, left, i, share) for i in range(len(gained))]
@@ -94,6 +95,15 @@ def _gain(
     here, dry = [moved.run == i for i in range(len(gained))], np.sign(velocity)[:, None]
     own = share[0] * np.array([_saved(left[0, of], dry[of]) for of in here])
     return np.asarray(gained - 0.5 * (FREEDOM + 1) * own)
+
+
+def _mended(fit: Fit, without: Fit, run: np.ndarray, num: int) -> np.ndarray:
+    """Whether any equation leaves less (rms) of each experiment with lags of its own than without, or of all
+    experiments: one late sensor spoils the parameters of all. A resonance that the simulator lacks may make the robust
+    cost of an experiment fall although no large error does."""
+    own, common = (np.array([np.bincount(run, np.square(row), num) for row in of.residual]) for of in (fit, without))
+    pooled = bool(np.any(own.sum(axis=1) < MENDED**2 * common.sum(axis=1)))
+    return np.any(own < MENDED**2 * common, axis=0) | pooled
 
 
 def _weights(slopes: np.ndarray, run: np.ndarray, num: int) -> np.ndarray:

@@ -29,11 +29,13 @@ class Motion:
 
 def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int]) -> SideTable | None:
     """Rms error of the drive effort for each of `systems`, fitted to the training experiments by least squares. None
-    for a system of more than one axis, where the angle was not measured, or sampled too slowly."""
+    for a system of more than one axis, where its drive or its angle was not measured, or sampled too slowly."""
     info = case.system.info
     output = next((c for c, s in enumerate(info.outputs) if s.axis == 0 and c in case.measured), None)
     steps = [float(np.median(np.diff(e.time))) for e in case.experiments]
     if info.dof != 1 or not info.commanded or output is None or max(steps) > 0.25 / CUTOFF:
+        return None
+    if any(info.inputs[0].name not in e.data for e in case.experiments):  # nuts that move as prescribed have no drive
         return None
     motions = [_motion(case, i, output) for i in range(len(case.experiments))]
     rows = []

@@ -98,7 +98,7 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     do without this effect nearly as well, once they start where they ended with it. A rival whose lead foretells
     no other block better is as good as the holder, no better."""
     rest = tuple(name for name in base.added if name != effect)
-    others = _without(fitter, base, effect, rest)
+    others = refitted_without(fitter, base, (effect,))
     holder = Trial.of(effect, replace(base, added=(*rest, effect)), others)
     if stored is not None and holder.evidence_gain > KEPT * stored.holder.evidence_gain:
         return stored
@@ -119,8 +119,11 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     return Place(others, holder, round_)
 
 
-def _without(fitter: Fitter, base: Fitted, effect: str, rest: tuple[str, ...]) -> Fitted:
-    return fitter.settled(fitter.fit(drop_effects(fitter, base, (effect,)), added=rest, initial=base.initial))
+def refitted_without(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> Fitted:
+    """The model refitted without some of the effects that were added to it, nor any that cannot be without them."""
+    system = drop_effects(fitter, model, effects)
+    left = tuple(name for name in model.added if name in system.effects)
+    return fitter.settled(fitter.fit(system, added=left, initial=model.initial))
 
 
 def improve(
@@ -176,10 +179,21 @@ def _plainer(rival: Trial, holder: Trial) -> bool:
 
 
 def drop_effects(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> System:
-    """The simulator of `model` without some of the effects that were added to it."""
+    """The simulator of `model` without some of the effects that were added to it, nor any that cannot be without them,
+    as a bristle without dry friction."""
     own = model.system.parameters
     nominal = fitter.case.system
     kept = [name for name in model.added if name not in effects]
     values = {name: {p: own[p] for p in nominal.info.effect(name).parameters if p in own} for name in kept}
-    tuned = nominal.with_parameters({name: own[name] for name in nominal.parameters if name in own})
-    return extended(tuned, values)
+    system = nominal.with_parameters({name: own[name] for name in nominal.parameters if name in own})
+    while able := [name for name in values if _can_be_in(system, name, values[name])]:
+        system = extended(system, {name: values.pop(name) for name in able})
+    return system
+
+
+def _can_be_in(system: System, effect: str, values: Mapping[str, float]) -> bool:
+    try:
+        extended(system, {effect: values})
+    except ParameterError:
+        return False
+    return True

@@ -12,9 +12,9 @@ from tendonlab.diagnosis.search.rivals import (
     Place,
     Places,
     contest_each_place,
-    drop_effects,
     improve,
     largest_gain,
+    refitted_without,
 )
 from tendonlab.diagnosis.search.trial import DETECT, Bar, Trial, explains_enough
 from tendonlab.diagnosis.search.workshop import Workshop
@@ -147,9 +147,4 @@ def _leaders(base: Fitted, trials: Sequence[Trial]) -> list[Trial]:
 
 def _models_before(fitter: Fitter, model: Fitted) -> list[Fitted]:
     """The models between the refitted simulator and `model`, effect by effect."""
-    return [
-        fitter.settled(
-            fitter.fit(drop_effects(fitter, model, model.added[k:]), added=model.added[:k], initial=model.initial)
-        )
-        for k in range(1, len(model.added))
-    ]
+    return [refitted_without(fitter, model, model.added[k:]) for k in range(1, len(model.added))]

@@ -14,6 +14,7 @@ from tendonlab.fitting.problem import Fitter
 STEADY, LOSSES = 2.0, 5.0
 MOST = 1e9  # nats: beyond, a gain says no more
 FURTHER_EVIDENCE, FURTHER_LEFT_OUT, FURTHER_SHARE = 30.0, 9.0, 0.01
+SAME_LAW = 0.1  # the same share of a law that the model has elsewhere: errors of its shape gained up to 0.07
 TWIN = 3.0  # nats within which two effects say the same of these data
 SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that an effect must remove
 LITTLE = 0.1  # of the rest, far above the floor: of right further effects none removed less than 0.14
@@ -149,8 +150,11 @@ def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
 def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> bool:
     """Whether, where repeats say what is noise, the first trial is more than the error of the shape of an effect that
     was added before: either by its share of the `largest_gain` of those and of what is left, or because it tells
-    clearly and leaves little."""
-    gain = trials[0].evidence_gain
+    clearly and leaves little. Friction that falls with speed otherwise than the library's makes Stribeck friction of
+    the joint of that of the motor: a law that the model has elsewhere needs a larger share."""
+    gain, law = trials[0].evidence_gain, trials[0].effect.split(":")[-1]
+    if any(name.split(":")[-1] == law for name in base.added):
+        return gain > SAME_LAW * largest_gain and not removes_little(base, trials[0])
     if gain > HIDDEN and explains_enough(base, trials):
         return True
     return gain > FURTHER_SHARE * largest_gain and not removes_little(base, trials[0])
