@@ -103,7 +103,7 @@ def _mended(fit: Fit, without: Fit, run: np.ndarray, num: int) -> np.ndarray:
     cost of an experiment fall although no large error does."""
     own, common = (np.array([np.bincount(run, np.square(row), num) for row in of.residual]) for of in (fit, without))
     pooled = bool(np.any(own.sum(axis=1) < MENDED**2 * common.sum(axis=1)))
-    return np.any(own < MENDED**2 * common, axis=0) | pooled
+    return np.asarray(np.any(own < MENDED**2 * common, axis=0) | pooled)
 
 
 def _weights(slopes: np.ndarray, run: np.ndarray, num: int) -> np.ndarray:
