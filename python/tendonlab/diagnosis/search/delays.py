@@ -12,7 +12,9 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 
 LEAST = 0.05  # of the step of the logs
-LEAST_BY_SAMPLES = 0.5  # the same where a system answers sample by sample
+LEAST_BY_SAMPLES = (
+    0.75  # the same where a system answers sample by sample: half a sample, and what else stamps leave open
+)
 TOO_SHORT = "its delay of {:.2g} ms is shorter than {:.2g} ms, finer than logs with steps of {:.2g} ms tell time"
 
 
