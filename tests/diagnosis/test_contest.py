@@ -88,14 +88,6 @@ def test_the_bar_of_a_further_effect_is_higher_where_runs_repeat() -> None:
     assert bar_for_further_effect(fitter_of(repeated=False)) == Bar(10.0, 3.0, doubted=True)
 
 
-def test_a_law_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
-    """However little is left: Stribeck friction of a joint whose shape is not the library's looks like the motor's."""
-    base: Any = SimpleNamespace(mean_square=3.0, added=("joint:stribeck",))
-    for effect, gain, no_shape in [("motor:stribeck", 900.0, False), ("motor:stribeck", 1100.0, True)]:
-        assert is_no_shape(base, [trial(effect, gain, mean_square=1.1)], 10_000.0) is no_shape
-    assert is_no_shape(base, [trial("motor:asymmetry", 200.0, mean_square=1.1)], 10_000.0)
-
-
 @pytest.mark.parametrize(
     ("gain", "largest", "left", "no_shape"),
     [

@@ -1,4 +1,4 @@
-"""What a trial makes of beliefs, and of effects that may be 0 although they gain."""
+"""What a trial makes of beliefs, of effects that may be 0 although they gain, and of laws that are there elsewhere."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.search.contest import _reliever
-from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.diagnosis.search.trial import Trial, is_no_shape
 
 
 def believed(strain: float, **more: Any) -> Any:
@@ -51,3 +51,16 @@ def test_what_relieves_the_beliefs_takes_over_near_the_floor(
     trials = [Trial("a", fitted, 200.0, 200.0, 0.0), Trial("b", fitted, 50.0, 50.0, 0.0, relieved=relieved)]
     best = _reliever(base, trials, {"a", "b"})
     assert (best.effect if best else None) == found
+
+
+def test_a_law_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
+    """However little is left: Stribeck friction of a joint whose shape is not the library's looks like the motor's."""
+    base: Any = SimpleNamespace(mean_square=3.0, added=("joint:stribeck",))
+    left: Any = SimpleNamespace(mean_square=1.1)
+
+    def needed(effect: str, gain: float) -> bool:
+        return is_no_shape(base, [Trial(effect, left, gain, gain, 0.0)], 10_000.0)
+
+    assert not needed("motor:stribeck", 900.0)
+    assert needed("motor:stribeck", 1100.0)
+    assert needed("motor:asymmetry", 200.0)
