@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from checking.pendulum import CONSTANT, COULOMB, GRAVITY, INERTIA, MOTIONS, VISC
 from tendonlab.checking.check import check
 from tendonlab.checking.clocks import SCANNED
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.lags import _saved, _steps, _weights, lags
+from tendonlab.checking.lags import _mended, _saved, _steps, _weights, lags
 from tendonlab.checking.logs import read_logs
 from tendonlab.checking.regression import FREEDOM, Fit, Unknown
 from tendonlab.checking.terms import Terms
@@ -134,3 +136,18 @@ def test_a_run_that_never_slides_lags_no_other(seed: int, tmp_path: Path) -> Non
     found = check(rig)
     assert not any(f.experiment == "still" and f.problem == "clock" for f in found.findings)
     assert not found.blocks
+
+
+@pytest.mark.parametrize(
+    ("own", "mended"),
+    [
+        ([[21.0, 1.0, 3.5], [19.7, 1.5, 2.95]], [False, False, False]),  # a hidden resonance: no error falls by much
+        ([[20.0, 1.0, 2.8], [20.0, 1.5, 3.0]], [False, False, True]),
+        ([[15.0, 1.0, 4.0], [20.0, 9.0, 4.0]], [True, True, True]),  # one late sensor had spoilt the others
+    ],
+)
+def test_lags_of_a_late_run_mend_an_equation(own: list[list[float]], mended: list[bool]) -> None:
+    """Two equations, three experiments of a sample each."""
+    common: Any = SimpleNamespace(residual=np.array([[20.0, 1.0, 3.0], [20.0, 1.5, 3.0]]))
+    with_lags: Any = SimpleNamespace(residual=np.array(own))
+    assert list(_mended(with_lags, common, np.arange(3), 3)) == mended

@@ -21,7 +21,7 @@ SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
 MOST_ROUNDS, CLOSE = 40, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
 ROUNDS = 12  # of a robust regression
-MENDED = 0.9  # share of what an equation leaves of an experiment (rms) that its own lags must at most leave
+MENDED = 0.96  # share of what an equation leaves of an experiment (rms) that its own lags must at most leave
 
 
 @dataclass(frozen=True)
