@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, may_be_noise, patterned, scattered
+from tendonlab.diagnosis.discrepancy import (
+    FAR_SCATTERED,
+    FAR_TRAINED,
+    FOLLOWED,
+    RINGS,
+    may_be_noise,
+    patterns,
+    scattered,
+)
 
 TIME = np.linspace(0.0, 10.0, 1000)
 RNG = np.random.default_rng(3)
@@ -51,7 +59,7 @@ def test_what_depends_on_position_and_direction_is_foretold(form: Any) -> None:
         own = form(q, v)
         return own + np.sqrt(np.mean(own**2)) * noise(q)
 
-    assert patterned(case(left), MODEL) == pytest.approx(0.5, abs=0.1)
+    assert patterns(case(left), MODEL).followed == pytest.approx(0.5, abs=0.1)
     assert not may_be_noise(case(left), MODEL)
 
 
@@ -61,7 +69,7 @@ def test_friction_that_drifts_alike_in_every_run_is_foretold() -> None:
         own -= np.sign(v) * np.mean(np.exp(-TIME / 4.0))  # what a fit has left
         return own + np.sqrt(np.mean(own**2)) * noise(q)
 
-    assert patterned(case(left), MODEL) == pytest.approx(0.5, abs=0.1)
+    assert patterns(case(left), MODEL).followed == pytest.approx(0.5, abs=0.1)
 
 
 def ringing(q: np.ndarray, v: np.ndarray, k: int) -> np.ndarray:
@@ -73,7 +81,7 @@ def ringing(q: np.ndarray, v: np.ndarray, k: int) -> np.ndarray:
 
 def test_a_resonance_is_no_noise() -> None:
     rig = case(ringing)
-    assert patterned(rig, MODEL) == pytest.approx(0.5, abs=0.2)
+    assert patterns(rig, MODEL).ringing == pytest.approx(0.5, abs=0.2)
     assert not may_be_noise(rig, MODEL)
 
 
@@ -85,19 +93,20 @@ def test_a_band_in_which_the_rig_is_moved_is_no_resonance() -> None:
         sign = (-1.0) ** next(signs)
         run["ports"] = np.array([[np.cos(fast * TIME), np.sin(fast * TIME), 0.0 * TIME, 0.0 * TIME]])
         run["outputs"] = np.array([sign * np.sign(np.cos(fast * TIME)) + noise(TIME)])
-    assert patterned(rig, MODEL) < FOLLOWED
+    assert patterns(rig, MODEL).ringing < RINGS
 
 
 def test_how_runs_begin_is_no_drift() -> None:
     """An initial state that is a little wrong leaves the same in every run, soon over."""
-    assert patterned(case(lambda q, v, k: np.exp(-TIME / 0.1) + 0.05 * noise(q)), MODEL) < FOLLOWED
+    assert patterns(case(lambda q, v, k: np.exp(-TIME / 0.1) + 0.05 * noise(q)), MODEL).followed < FOLLOWED
 
 
 @pytest.mark.parametrize("left", [lambda q, v, k: noise(q), lambda q, v, k: slow(q), lambda q, v, k: (-1.0) ** k * q])
 def test_noise_is_not_foretold(left: Any) -> None:
     """White, slow, or in each experiment of another sign."""
     rig = case(left)
-    assert patterned(rig, MODEL) < FOLLOWED
+    assert patterns(rig, MODEL).ringing < RINGS
+    assert patterns(rig, MODEL).followed < FOLLOWED
     assert may_be_noise(rig, MODEL)
 
 
@@ -119,7 +128,7 @@ def test_friction_that_differs_too_much_from_run_to_run_is_no_noise() -> None:
 
 
 def test_samples_that_were_not_measured_and_exact_models_are_no_discrepancy() -> None:
-    assert patterned(case(lambda q, v, k: np.where(q > 0.5, np.nan, noise(q))), MODEL) < FOLLOWED
-    assert patterned(case(lambda q, v, k: 0.0 * q), MODEL) == 0.0
+    assert patterns(case(lambda q, v, k: np.where(q > 0.5, np.nan, noise(q))), MODEL).followed < FOLLOWED
+    assert patterns(case(lambda q, v, k: 0.0 * q), MODEL).followed == 0.0
     once = case(lambda q, v, k: np.sign(v) if k == 0 else np.nan * q)
-    assert patterned(once, MODEL) == 0.0  # no other experiment tells
+    assert patterns(once, MODEL).followed == 0.0  # no other experiment tells

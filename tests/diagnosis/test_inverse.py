@@ -1,5 +1,6 @@
 """Inverse dynamics: each friction amplitude of an axis is a column of its regression."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +84,12 @@ def test_a_regression_gives_the_parameters_of_the_axis_in_units_of_effort(case: 
     for error in ("fitted rms", "held-out rms"):
         assert found[error] < 0.3 * frame.loc["nominal structure", error]
     assert "rms in N·m" in table.note
+
+
+def test_an_axis_whose_drive_was_not_logged_has_no_table(case: Case) -> None:
+    """Nuts that move as prescribed have none; diagnoses of such logs ended."""
+    bare = tuple(replace(e, data=e.data.drop(columns="motor_torque")) for e in case.experiments)
+    assert inverse_dynamics(replace(case, experiments=bare), [case.system], judged=[1]) is None
 
 
 def test_gravity_known_efforts_and_payloads_are_part_of_the_balance() -> None:

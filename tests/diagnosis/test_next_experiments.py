@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,6 +18,7 @@ from tendonlab.diagnosis.answer.next_experiments import Loop, _gain, _logged, _l
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
+from tendonlab.papers import s2
 from tendonlab.simulation.prepare import prepare
 
 LOOP = Loop(400.0, 40.0, "joint_angle")
@@ -153,3 +155,17 @@ def test_a_model_follows_a_motion_from_rest(payload: float) -> None:
     assert balance[time > EASE + 0.02][:-5] == pytest.approx(0.0, abs=2e-3)  # of differences of 4 ms
     halfway = np.interp(0.5 * EASE, time, found) - path[0]
     assert halfway == pytest.approx(0.5 * (np.interp(0.5 * EASE, time, path) - path[0]), abs=5e-3)
+
+
+def test_a_system_that_knows_a_part_of_its_state_itself_is_driven_too(tmp_path: Path) -> None:
+    """A cable joint states its own angle, and its motor follows. Proposing a motion ended diagnoses."""
+    system = s2.write_dataset(tmp_path, s2.constants()).system()
+    time = np.arange(0.0, 1.0, 0.01)
+    path = 0.2 + 0.0 * np.arange(0.0, DURATION, 1 / RATE)
+    motion: Any = SimpleNamespace(path=path, payload=0.0)
+    names = [s.name for s in system.info.outputs]
+    of: Any = SimpleNamespace(system=system)
+    rig: Any = SimpleNamespace(outputs=names, settings=lambda: _core.Settings(tolerance=1e-5))
+    found = _run(rig, of, motion, Loop(20.0, 1.0, "joint_angle"), time)["outputs"][names.index("joint_angle")]
+    assert found[0] == pytest.approx(0.2)
+    assert np.all(np.isfinite(found))

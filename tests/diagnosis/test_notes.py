@@ -9,6 +9,7 @@ import pandas as pd
 
 from tendonlab.diagnosis.answer import notes
 from tendonlab.diagnosis.answer.verdict import Levels
+from tendonlab.diagnosis.discrepancy import Patterns
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.workshop import NOTHING
@@ -88,10 +89,14 @@ def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
 
 
 def test_an_error_that_is_no_noise_is_explained() -> None:
-    near = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, patterned=0.1)
+    near = Levels(
+        nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False, patterns=Patterns(0.1, 0.1)
+    )
     assert notes.no_noise(near, selected=False) == []
-    (follows,) = notes.no_noise(replace(near, patterned=0.45), selected=False)
-    assert "holds 45 % of its mean square" in follows
+    (follows,) = notes.no_noise(replace(near, patterns=Patterns(0.45)), selected=False)
+    assert "predicts 45 % of its mean square" in follows
+    (rings,) = notes.no_noise(replace(near, patterns=Patterns(0.1, 0.5)), selected=False)
+    assert "one narrow band of frequencies holds 50 % of its mean square" in rings
     (large,) = notes.no_noise(replace(near, trained=16.0), selected=False)
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
     (strained,) = notes.no_noise(replace(near, strained=37.2), selected=False)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.search.contest import probabilities
-from tendonlab.diagnosis.search.trial import DETECT, Trial, plainest_first, removes_little
+from tendonlab.diagnosis.search.trial import DETECT, Trial, is_no_shape, plainest_first, removes_little
 
 
 def test_no_effect_counts_more_than_the_one_it_gave_way_to() -> None:
@@ -45,6 +45,9 @@ def test_what_one_run_alone_shows_gives_way_to_a_plainer_effect(
     assert plainest_first(trials, {"first"})[0].effect == "first"
 
 
-def test_near_the_floor_a_further_effect_may_remove_little() -> None:
-    base, found = SimpleNamespace(mean_square=1.25), Trial("a", SimpleNamespace(mean_square=1.24), 900.0, 900.0, 0.0)
-    assert not removes_little(base, found)  # type: ignore[arg-type]
+@pytest.mark.parametrize(("base", "left", "counts"), [(1.25, 1.24, True), (3.0, 2.9, False)])
+def test_near_the_floor_a_further_effect_may_remove_little(base: float, left: float, counts: bool) -> None:
+    before: Any = SimpleNamespace(mean_square=base, added=("first",))
+    found = Trial("a", SimpleNamespace(mean_square=left), 900.0, 900.0, 0.0)  # type: ignore[arg-type]
+    assert removes_little(before, found)
+    assert is_no_shape(before, [found], 10_000.0) is counts

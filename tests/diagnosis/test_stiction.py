@@ -20,12 +20,19 @@ def sticky(fitter: Fitter, ratio: float, coulomb: float) -> Fitted:
 
 @pytest.mark.parametrize(("ratio", "is_told"), [(0.9 * MOST, True), (1.1 * MOST, False)])
 def test_friction_at_rest_is_some_times_that_in_motion(fitter: Fitter, ratio: float, is_told: bool) -> None:
-    trouble = trouble_with_stiction(sticky(fitter, ratio, 0.03), NAME)
+    trouble = trouble_with_stiction(fitter.case, sticky(fitter, ratio, 0.03), NAME)
     assert (trouble == "") is is_told
     assert is_told or f"{1.1 * MOST:.2g} times the kinetic one" in trouble
 
 
 def test_other_effects_and_elements_have_none(fitter: Fitter, nominal: Any) -> None:
     sliding = sticky(fitter, 2.0 * MOST, 0.03)
-    assert trouble_with_stiction(sliding, "joint:asymmetry") == ""
-    assert trouble_with_stiction(nominal, "joint:coulomb") == ""
+    assert trouble_with_stiction(fitter.case, sliding, "joint:asymmetry") == ""
+    assert trouble_with_stiction(fitter.case, nominal, "joint:coulomb") == ""
+
+
+def test_a_joint_whose_friction_grows_with_load_may_have_little_of_its_own(fitter: Fitter) -> None:
+    sliding = sticky(fitter, 2.0 * MOST, 0.03)
+    system = sliding.system.with_effects({"joint:load_dependence": {"joint_load_dependence": 0.1}})
+    loaded = fitter.fit(system, added=(NAME, "joint:load_dependence"), solve=False)
+    assert trouble_with_stiction(fitter.case, loaded, NAME) == ""

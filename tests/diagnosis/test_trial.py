@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tendonlab as tl
 from tendonlab.diagnosis.search.contest import _reliever
 from tendonlab.diagnosis.search.trial import Trial, is_no_shape
 
@@ -53,14 +54,17 @@ def test_what_relieves_the_beliefs_takes_over_near_the_floor(
     assert (best.effect if best else None) == found
 
 
-def test_a_law_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
-    """However little is left: Stribeck friction of a joint whose shape is not the library's looks like the motor's."""
-    base: Any = SimpleNamespace(mean_square=3.0, added=("joint:stribeck",))
-    left: Any = SimpleNamespace(mean_square=1.1)
+def test_friction_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
+    """However little is left: Stribeck friction of a joint whose shape is not the library's looks like the motor's. A
+    bias has no shape."""
+    info = tl.system_info("two_inertia")
 
-    def needed(effect: str, gain: float) -> bool:
-        return is_no_shape(base, [Trial(effect, left, gain, gain, 0.0)], 10_000.0)
+    def needed(effect: str, gain: float, beside: str) -> bool:
+        base: Any = SimpleNamespace(mean_square=3.0, added=(beside,))
+        fitted: Any = SimpleNamespace(mean_square=1.1, system=SimpleNamespace(info=info))
+        return is_no_shape(base, [Trial(effect, fitted, gain, gain, 0.0)], 10_000.0)
 
-    assert not needed("motor:stribeck", 900.0)
-    assert needed("motor:stribeck", 1100.0)
-    assert needed("motor:asymmetry", 200.0)
+    assert not needed("motor:stribeck", 900.0, "joint:stribeck")
+    assert needed("motor:stribeck", 1100.0, "joint:stribeck")
+    assert needed("motor:asymmetry", 200.0, "joint:stribeck")
+    assert needed("sensor.motor_angle:bias", 200.0, "sensor.joint_angle:bias")

@@ -20,7 +20,7 @@ from tendonlab.diagnosis.answer.verdict import (
     decide,
     marginals,
 )
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, RINGS, Patterns
 from tendonlab.diagnosis.drift import RARE
 
 
@@ -41,9 +41,15 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "signs", [{"trained": 1.5 * FAR_TRAINED}, {"patterned": 2.0 * FOLLOWED}, {"scattered": 1.5 * FAR_SCATTERED}]
+    "signs",
+    [
+        {"trained": 1.5 * FAR_TRAINED},
+        {"patterns": Patterns(2.0 * FOLLOWED)},
+        {"patterns": Patterns(0.0, 2.0 * RINGS)},
+        {"scattered": 1.5 * FAR_SCATTERED},
+    ],
 )
-def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(signs: dict[str, float]) -> None:
+def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(signs: dict[str, Any]) -> None:
     near = Levels(nominal=1e4, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False)
     assert decide((), (), near).verdict == "parameters_only"
     found = decide((), (), replace(near, **signs))
@@ -261,9 +267,15 @@ def test_what_explains_a_part_only_may_imitate_the_unknown(repeated: bool, proba
 
 
 @pytest.mark.parametrize(
-    "signs", [{"trained": 1.2 * FAR_TRAINED}, {"patterned": 1.2 * FOLLOWED}, {"strained": 1.5 * STRAINED_BESIDE}]
+    "signs",
+    [
+        {"trained": 1.2 * FAR_TRAINED},
+        {"patterns": Patterns(1.2 * FOLLOWED)},
+        {"patterns": Patterns(0.0, 1.2 * RINGS)},
+        {"strained": 1.5 * STRAINED_BESIDE},
+    ],
 )
-def test_what_selected_effects_leave_must_be_noise(signs: dict[str, float]) -> None:
+def test_what_selected_effects_leave_must_be_noise(signs: dict[str, Any]) -> None:
     """A motor that fades looks like a gain error, which explains most of the held-out gap and leaves no noise. A
     tension in another unit looked like its bias, beside a wrap angle 287 sd from what was stated."""
     levels = Levels(nominal=50.0, tuned=20.0, refitted=20.0, explained=0.9, left=3.0, repeated=False)

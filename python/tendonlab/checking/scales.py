@@ -27,9 +27,7 @@ SPOILT = 1.5  # times the level of an equation that explains too little, beyond 
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 SETTLED = 0.01  # share of the level of an equation that may be left where no strain speaks against a factor
 BALANCED = 0.1  # level of an equation that balances: where none does, nothing may be strained
-MENDED_FAR = (
-    0.4  # level that a factor must reach to be believed for what it mends: friction with memory leaves the rest
-)
+NEARLY = 0.4  # level to which a factor must mend an equation to be believed for that: friction with memory remains
 LATEST, MOST_LAGS = 0.05, 8  # s: lags of outputs that are tried before a factor is told, at most so many
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
@@ -105,7 +103,7 @@ def _is_credible(factor: Factor, plain: Fit) -> bool:
     brings an equation from far away near balance. There the logs as they are strain nothing, as nothing suits them."""
     if not _blocks(-factor.value) or factor.fit.strain < max(plain.strain, CREDIBLE):
         return True
-    return bool(np.any((factor.fit.level < MENDED_FAR) & (factor.fit.level < SETTLED * plain.level)))
+    return bool(np.any((factor.fit.level < NEARLY) & (factor.fit.level < SETTLED * plain.level)))
 
 
 def _mere_sign(

@@ -4,6 +4,7 @@ these, and what the model lacks often does."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,8 @@ RIDGE = 0.02  # prior weight of each cell, of an even share of the samples
 
 FAR_TRAINED = 8.0  # mean square over what the sensors and run-to-run friction may leave, beyond which it is no noise
 FAR_SCATTERED = 4.0  # mean square of run-to-run factors over what is plausible: beyond twice that they are no noise
-FOLLOWED = 0.2  # share of the residual that follows the motion, drifts or rings, beyond which it is no noise
+FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
+RINGS = 0.2  # the same of one narrow band of frequencies: models without a resonance to find left 0.11 at most
 BAND, NUM_BANDS = 0.2, 60  # half width of a band of frequencies, of its middle, and how many are looked at
 LEAST_PERIODS = 10.0  # of the lowest band in the shortest run: fewer hardly fill a band
 DRIVEN = 0.02  # share of the motion, or of its sign, in such a band, beyond which friction alone fills it
@@ -29,15 +31,26 @@ def may_be_noise(case: Case, model: Fitted) -> bool:
     """Whether nothing in what a model leaves tells that anything is missing, where nothing repeats."""
     if model.over_scatter(len(case.scatter)) >= FAR_TRAINED or scattered(case, model) >= FAR_SCATTERED:
         return False
-    return patterned(case, model) < FOLLOWED
+    found = patterns(case, model)
+    return found.followed < FOLLOWED and found.ringing < RINGS
 
 
-def patterned(case: Case, model: Fitted) -> float:
-    """Largest share of the mean square residual of an output in which there is a pattern: it follows the motion, drifts
-    along every run, or rings."""
+class Patterns(NamedTuple):
+    """Largest shares of the mean square residual of an output: that which a map over the motion or the time since a run
+    began foretells (`followed`), and that of one narrow band of frequencies (`ringing`)."""
+
+    followed: float = 0.0
+    ringing: float = 0.0
+
+
+NO_PATTERNS = Patterns()
+
+
+def patterns(case: Case, model: Fitted) -> Patterns:
+    """What patterns there are in what a model leaves."""
     runs = [case.run(i, model.system, own, ports=True) for i, own in zip(case.train, model.initial, strict=True)]
     residuals = [run["outputs"] - case.prepared[i].measured for i, run in zip(case.train, runs, strict=True)]
-    return max(_followed(case, runs, residuals), _ringing(case, runs, residuals))
+    return Patterns(_followed(case, runs, residuals), _ringing(case, runs, residuals))
 
 
 def scattered(case: Case, model: Fitted) -> float:

@@ -13,7 +13,7 @@ from tendonlab.errors import ParameterError, expected_one_of
 __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInfo", "PortInfo", "SystemInfo"]
 
 AXES = ("rotary", "linear")
-LEVEL, FACTOR, MEMORY, REFINES, WHOLE = 2, 4, 16, 32, 64  # roles of laws, as the core numbers them (core/law.hpp)
+LEVEL, FACTOR, MEMORY, REFINES, WHOLE, SIGNAL = 2, 4, 16, 32, 64, 256  # roles of laws, as core/law.hpp numbers them
 DIMENSIONS = _core.dimensions()
 PORT_QUANTITIES = tuple(_core.port_quantities())  # that can be recorded of each port
 Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)

@@ -13,7 +13,7 @@ from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, RINGS
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.workshop import NOTHING
@@ -218,11 +218,16 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
             f"{levels.strained:.0f} stated standard deviations away from its stated value, so something else is "
             "missing. If that standard deviation was stated too small, nothing else may be."
         )
-    if levels.patterned >= FOLLOWED:
+    if levels.patterns.followed >= FOLLOWED:
         found.append(
-            "The remaining error has a pattern. It follows the motion or drifts alike in every run, so that a map over "
-            "direction and place or time, learnt from other experiments, predicts it; or it rings in one narrow band "
-            f"of frequencies. The pattern holds {100 * levels.patterned:.0f} % of its mean square. So it is not noise."
+            "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "
+            "over direction and time since the start, learnt from other experiments, predicts "
+            f"{100 * levels.patterns.followed:.0f} % of its mean square. So it is not noise."
+        )
+    if levels.patterns.ringing >= RINGS:
+        found.append(
+            f"The remaining error rings: one narrow band of frequencies holds {100 * levels.patterns.ringing:.0f} % of "
+            "its mean square in most experiments. So it is not noise, but a resonance that the simulator lacks."
         )
     if levels.trained >= FAR_TRAINED:
         found.append(

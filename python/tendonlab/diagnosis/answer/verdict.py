@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, NO_PATTERNS, RINGS, Patterns
 from tendonlab.diagnosis.drift import RARE
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.fitting.noise import NEAR_FLOOR
@@ -25,7 +25,7 @@ AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enoug
 PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
 PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
 SOFT, SAME_GROUP = 0.05, 0.2
-STRAINED_BESIDE = 20.0  # the same beside effects: all of five that were strained further were wrong or but a part
+STRAINED_BESIDE = 20.0  # the same beside effects: four of 154 were strained further, and wrong or but a part
 STEEP = 5.0  # how fast strained beliefs turn the verdict
 
 
@@ -40,9 +40,9 @@ class Levels:
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
-    run-to-run friction may leave, and `patterned`: the share of that which follows the motion, drifts or rings; and,
-    where nothing was selected, `scattered`: by how much friction differs from run to run. `strained`: by how many
-    stated standard deviations the fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of
+    run-to-run friction may leave, and the `patterns` in that; and, where nothing was selected, `scattered`: by how much
+    friction differs from run to run. `strained`: by how many stated standard deviations the fit pulled the parameter
+    that it pulled farthest. `drifted`: the chance of a trend of
     friction over the session, 1 where there is none that matters."""
 
     nominal: float
@@ -53,7 +53,7 @@ class Levels:
     repeated: bool
     whitened: float = np.inf
     trained: float = 1.0
-    patterned: float = 0.0
+    patterns: Patterns = NO_PATTERNS
     scattered: float = 0.0
     strained: float = 0.0
     drifted: float = 1.0
@@ -142,7 +142,8 @@ def _chance_room(levels: Levels) -> float:
 def _noise_room(levels: Levels) -> float:
     """Share by which what the final model leaves of the training experiments keeps clear of what is no noise, where
     nothing repeats."""
-    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - levels.patterned / FOLLOWED)
+    followed, ringing = levels.patterns
+    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - followed / FOLLOWED, 1.0 - ringing / RINGS)
 
 
 def _step(x: float) -> float:

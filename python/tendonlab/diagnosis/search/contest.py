@@ -14,13 +14,13 @@ from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import (
     DETECT,
-    LITTLE,
     Bar,
     Trial,
     bar_for_further_effect,
     explains_enough,
     is_no_shape,
     plainest_first,
+    removes_little,
 )
 from tendonlab.diagnosis.search.workshop import FAR_BEHIND, Workshop
 from tendonlab.errors import NumericalError, ParameterError
@@ -31,7 +31,7 @@ from tendonlab.fitting.problem import Fitter
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
-FORM = 0.01  # the same, of the most that an effect gains: of 60 right ones none was ahead by less than 0.04 of that
+FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none was ahead by less than 0.04 of that
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
@@ -165,7 +165,7 @@ def _worth_adding(
     near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
     if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
-    is_little = base.mean_square - first.mean_square < LITTLE * (base.mean_square - 1.0)
+    is_little = removes_little(base, trials[0])
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and not is_little and _evidence_counts(fitter, base)
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False

@@ -10,6 +10,7 @@ import numpy as np
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
+from tendonlab.simulation.catalog import SIGNAL
 
 STEADY, LOSSES = 2.0, 5.0
 MOST = 1e9  # nats: beyond, a gain says no more
@@ -152,15 +153,21 @@ def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> b
     was added before: either by its share of the `largest_gain` of those and of what is left, or because it tells
     clearly and leaves little. Friction that falls with speed otherwise than the library's makes Stribeck friction of
     the joint of that of the motor: a law that the model has elsewhere needs a larger share."""
-    gain, law = trials[0].evidence_gain, trials[0].effect.split(":")[-1]
-    if any(name.split(":")[-1] == law for name in base.added):
-        return gain > SAME_LAW * largest_gain and not removes_little(base, trials[0])
-    if gain > HIDDEN and explains_enough(base, trials):
-        return True
-    return gain > FURTHER_SHARE * largest_gain and not removes_little(base, trials[0])
+    gain = trials[0].evidence_gain
+    matters = base.mean_square <= NEAR_FLOOR or not removes_little(base, trials[0])
+    if _is_friction_elsewhere(base, trials[0]):
+        return gain > SAME_LAW * largest_gain and matters
+    return (gain > HIDDEN and explains_enough(base, trials)) or (gain > FURTHER_SHARE * largest_gain and matters)
+
+
+def _is_friction_elsewhere(base: Fitted, trial: Trial) -> bool:
+    """Whether the model has the law of the trial's effect in another element already, where that is friction: a bias or
+    a delay of another sensor has no shape that could err."""
+    law = trial.effect.split(":")[-1]
+    there = any(name.split(":")[-1] == law for name in base.added)
+    return there and not trial.fitted.system.info.effect(trial.effect).roles & SIGNAL
 
 
 def removes_little(base: Fitted, trial: Trial) -> bool:
-    """Whether the trial removes less than a tenth of what the base leaves far above the known noise."""
-    rest = base.mean_square - 1.0
-    return base.mean_square > NEAR_FLOOR and base.mean_square - trial.fitted.mean_square < LITTLE * rest
+    """Whether the trial removes less than a tenth of what the base leaves above the known noise."""
+    return base.mean_square - trial.fitted.mean_square < LITTLE * (base.mean_square - 1.0)

@@ -25,6 +25,7 @@ FAR_BEHIND = 0.1  # share of the most that another candidate promises, and of wh
 CLOSE = (0.25, 0.1, 0.01, 0.01, 0.001, 0.001)  # of the best gain: so far behind may be a worse optimum, by rounds
 SAME = 0.1  # nats that are no difference
 NOTHING = "its 95 % interval holds 0"  # although it gains: why an effect does not count
+TROUBLES = (trouble_with_bristles, trouble_with_delays, trouble_with_stiction)  # why a fit does not tell of its effect
 
 
 @dataclass(frozen=True)
@@ -118,8 +119,7 @@ def _tried(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) ->
     try:
         started = candidate if candidate.far_behind else with_whole_shares(fitter, base, candidate)
         fit = refit(fitter, base, started, pace=pace)
-        told = (fitter.case, fit, candidate.effect)
-        trouble = trouble_with_bristles(*told) or trouble_with_delays(*told) or trouble_with_stiction(*told[1:])
+        trouble = next(filter(None, (of(fitter.case, fit, candidate.effect) for of in TROUBLES)), "")
     except (NumericalError, ParameterError) as reason:
         return Failed(candidate.effect, str(reason))
     return Failed(candidate.effect, trouble) if trouble else Trial.of(candidate.effect, fit, base)
