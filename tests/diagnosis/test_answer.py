@@ -32,7 +32,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
         for name, level in (("nominal", 5.0), ("refitted", 3.0), ("with_effect", 2.0))
     }
     nominal: Any = SimpleNamespace(mean_square=77.0)
-    monkeypatch.setattr(answer, "patterns", lambda case, model: Patterns(0.25, 0.1))
+    monkeypatch.setattr(answer, "patterns", lambda case, model: Patterns(0.25, 0.1, 6.0))
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     monkeypatch.setattr(answer, "strain", lambda case, model: 6.0)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
@@ -45,7 +45,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     assert found.explained == pytest.approx(5.0 / 8.0)
     assert found.whitened == 1.04
     assert (found.trained, found.patterns, found.scattered) == (
-        (1.0, Patterns(), 0.0) if repeated else (10.0, (0.25, 0.1), 0.0)
+        (1.0, Patterns(), 0.0) if repeated else (10.0, (0.25, 0.1, 6.0), 0.0)
     )
     search.selected, search.final = (), tuned
     none = _levels(search, nominal, stages, stages, floor, Drift("joint", -0.1, 0.001))
@@ -53,7 +53,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     assert found.strained == none.strained == 6.0
     assert none.explained is None
     assert (none.trained, none.patterns, none.scattered) == (
-        (1.0, Patterns(), 0.0) if repeated else (20.0, (0.25, 0.1), 3.0)
+        (1.0, Patterns(), 0.0) if repeated else (20.0, (0.25, 0.1, 6.0), 3.0)
     )
 
 

@@ -82,6 +82,7 @@ def ringing(q: np.ndarray, v: np.ndarray, k: int) -> np.ndarray:
 def test_a_resonance_is_no_noise() -> None:
     rig = case(ringing)
     assert patterns(rig, MODEL).ringing == pytest.approx(0.5, abs=0.2)
+    assert patterns(rig, MODEL).frequency == pytest.approx(6.0, rel=0.1)
     assert not may_be_noise(rig, MODEL)
 
 

@@ -95,8 +95,8 @@ def test_an_error_that_is_no_noise_is_explained() -> None:
     assert notes.no_noise(near, selected=False) == []
     (follows,) = notes.no_noise(replace(near, patterns=Patterns(0.45)), selected=False)
     assert "predicts 45 % of its mean square" in follows
-    (rings,) = notes.no_noise(replace(near, patterns=Patterns(0.1, 0.5)), selected=False)
-    assert "one narrow band of frequencies holds 50 % of its mean square" in rings
+    (rings,) = notes.no_noise(replace(near, patterns=Patterns(0.1, 0.5, 6.13)), selected=False)
+    assert "the frequencies about 6.1 Hz hold 50 % of its mean square" in rings
     (large,) = notes.no_noise(replace(near, trained=16.0), selected=False)
     assert "is 4 times as large as sensors and friction that differs by 2 % from run to run leave" in large
     (strained,) = notes.no_noise(replace(near, strained=37.2), selected=False)

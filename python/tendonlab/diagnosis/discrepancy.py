@@ -37,10 +37,11 @@ def may_be_noise(case: Case, model: Fitted) -> bool:
 
 class Patterns(NamedTuple):
     """Largest shares of the mean square residual of an output: that which a map over the motion or the time since a run
-    began foretells (`followed`), and that of one narrow band of frequencies (`ringing`)."""
+    began foretells (`followed`), and that of one narrow band (`ringing`) about a `frequency`, Hz."""
 
     followed: float = 0.0
     ringing: float = 0.0
+    frequency: float = 0.0
 
 
 NO_PATTERNS = Patterns()
@@ -50,7 +51,7 @@ def patterns(case: Case, model: Fitted) -> Patterns:
     """What patterns there are in what a model leaves."""
     runs = [case.run(i, model.system, own, ports=True) for i, own in zip(case.train, model.initial, strict=True)]
     residuals = [run["outputs"] - case.prepared[i].measured for i, run in zip(case.train, runs, strict=True)]
-    return Patterns(_followed(case, runs, residuals), _ringing(case, runs, residuals))
+    return Patterns(_followed(case, runs, residuals), *_ringing(case, runs, residuals))
 
 
 def scattered(case: Case, model: Fitted) -> float:
@@ -80,15 +81,17 @@ def _followed(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: S
     return max(shares)
 
 
-def _ringing(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: Sequence[np.ndarray]) -> float:
+def _ringing(
+    case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: Sequence[np.ndarray]
+) -> tuple[float, float]:
     """Largest share of the mean square residual of an output in one narrow band of frequencies beyond what the bands
     beside it hold, in most experiments, where neither the motion nor its sign has such a band: a resonance that the
-    model lacks, whatever excites it."""
+    model lacks, whatever excites it. And the middle of that band, Hz."""
     times = [np.asarray(case.prepared[i].core.time) for i in case.train]
     lowest = LEAST_PERIODS / min(time[-1] - time[0] for time in times)
     highest = 0.5 / max(np.median(np.diff(time)) for time in times) / (1.0 + 3.0 * BAND)
     if lowest >= highest:
-        return 0.0
+        return 0.0, 0.0
     middle = np.geomspace(lowest, highest, NUM_BANDS)
 
     def beyond(signals: Sequence[np.ndarray]) -> np.ndarray:
@@ -99,7 +102,8 @@ def _ringing(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: Se
         velocities = [np.asarray(run["ports"])[port][0] for run in runs]
         driven = np.maximum(beyond(velocities), beyond([np.sign(v) for v in velocities]))
         shares = np.where(driven > DRIVEN, 0.0, shares)
-    return float(np.max(shares, initial=0.0))
+    best = int(np.argmax(shares))
+    return max(float(shares[best]), 0.0), float(middle[best])
 
 
 def _beyond_neighbours(middle: np.ndarray, times: Sequence[np.ndarray], signals: Sequence[np.ndarray]) -> np.ndarray:

@@ -226,8 +226,9 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
         )
     if levels.patterns.ringing >= RINGS:
         found.append(
-            f"The remaining error rings: one narrow band of frequencies holds {100 * levels.patterns.ringing:.0f} % of "
-            "its mean square in most experiments. So it is not noise, but a resonance that the simulator lacks."
+            f"The remaining error rings: the frequencies about {levels.patterns.frequency:.2g} Hz hold "
+            f"{100 * levels.patterns.ringing:.0f} % of its mean square in most experiments. So it is not noise. A "
+            "resonance that the simulator lacks leaves such errors."
         )
     if levels.trained >= FAR_TRAINED:
         found.append(

@@ -142,8 +142,8 @@ def _chance_room(levels: Levels) -> float:
 def _noise_room(levels: Levels) -> float:
     """Share by which what the final model leaves of the training experiments keeps clear of what is no noise, where
     nothing repeats."""
-    followed, ringing = levels.patterns
-    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - followed / FOLLOWED, 1.0 - ringing / RINGS)
+    found = levels.patterns
+    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - found.followed / FOLLOWED, 1.0 - found.ringing / RINGS)
 
 
 def _step(x: float) -> float:
