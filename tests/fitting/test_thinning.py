@@ -136,6 +136,20 @@ def test_a_torque_that_shakes_the_joint_is_kept(rig, torque):
     assert len(after.time) == len(TIME)
 
 
+@pytest.mark.parametrize(("step", "samples"), [(0.02, 401), (2.0, 2001), (20.0, 4001)])
+def test_a_step_of_the_torque_that_would_move_the_joint_early_or_late_is_kept(rig, torque, step, samples):
+    """Smoothed over 10 ms, a step of 2 N·m moves 0.01 kg·m² by 1.7 mrad, one of 0.02 N·m by less than
+    the noise."""
+    stepped = 0.1 * np.sin(2 * np.pi * 1.3 * TIME) + step * (TIME > 2.0035)
+    assert len(thin(rig, motor_torque=stepped)[1].time) == samples
+
+
+@pytest.mark.parametrize(("jump", "samples"), [(3.0, 401), (30.0, 4001)])
+def test_an_output_that_jumps_is_kept(rig, jump, samples):
+    jumped = rig.experiments[0].data["joint_angle"] + jump * NOISE * (TIME > 2.0035)
+    assert len(thin(rig, joint_angle=jumped)[1].time) == samples
+
+
 def test_an_input_that_goes_straight_between_samples_has_other_means(rig):
     """As the log says, so the means are made: a ramp that is held lags half a sample behind one that goes straight."""
     (experiment,) = rig.experiments

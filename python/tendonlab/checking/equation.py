@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.checking.logs import Logs
+from tendonlab.checking.logs import VELOCITIES, Logs
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.catalog import MEMORY, SystemInfo
 from tendonlab.simulation.system import System
@@ -95,8 +95,12 @@ class Equation:
         return tuple(names.index(name) for name in self.others)
 
     def _groups(self, logs: Logs) -> list[list[int]]:
-        """Experiments that one call may go through: of the same conditions, with inputs that count at the instant."""
-        alone = any(s.between != "hold" and s.name in logs.driving for s in self.system.info.inputs)
+        """Experiments that one call may go through: of the same conditions, with inputs that count at the instant, not
+        velocities whose travel counts from the start."""
+        alone = any(
+            s.dimension in VELOCITIES and s.between != "hold" and s.name in logs.driving
+            for s in self.system.info.inputs
+        )
         groups: dict[str, list[int]] = {}
         for i in np.unique(logs.run).tolist():
             under = self.conditions[i]

@@ -92,7 +92,7 @@ def require_within(table: Table, key: str, value: float, *, lower: float, upper:
 def _read_parameter(table: Table, parameter: ParameterInfo) -> NominalParameter:
     table.allow(("value", "sd", "min", "max"))
     value = table.number("value")
-    sd = table.number("sd", lower=0.0) if "sd" in table.values else None
+    sd = table.number("sd", lower=0.0, infinite=True) if "sd" in table.values else None
     lower = max(table.number("min", -math.inf, infinite=True), parameter.lower)
     upper = min(table.number("max", math.inf, infinite=True), parameter.upper)
     if lower > upper:

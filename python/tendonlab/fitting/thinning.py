@@ -5,12 +5,13 @@ so that every impulse stays what it was."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
+from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.fitting.noise import noise_of, without_rounding
 from tendonlab.fitting.replay import is_slower, opened
@@ -21,8 +22,11 @@ from tendonlab.simulation.system import System
 
 RATE = 100.0  # Hz: logs are thinned to no less
 LOST = 1.15  # residual of the parabolas over the sensors' noise: more, and they would smooth motion away
+JUMPS = 5.0  # the same around one sample: more, and an output jumps there, which parabolas tell early and late
 MOST_LOST = 0.2  # rms of an input's noise over that of the input: more shakes a rig, which eases its friction
 MOST_LOST_OF_A_LOOP = 0.05  # the same where a simulated controller would make that noise again
+MOST_SHIFTED, SETTLES = 1.0, 4  # sd of a sensor by which a command that is smoothed may shift it, and within how many
+# samples that are kept: a joint that stops then stays off for as long as friction holds it
 THINNED = (
     "The logs were thinned from {:.0f} to {:.0f} samples per second; errors and noise floors are those of the smoothed "
     "signals."
@@ -32,11 +36,13 @@ GAP = 5.0  # usual steps between two samples: where more is missing, a log is no
 
 @dataclass(frozen=True)
 class Thinned:
-    """A column after thinning: `values`, by how much its white noise fell (`gain`, rms), and what was smoothed away."""
+    """A column after thinning: `values`, by how much its white noise fell (`gain`, rms), what was smoothed away
+    (`removed`), and the `largest` rms of that around one sample."""
 
     values: np.ndarray
     gain: float
     removed: np.ndarray
+    largest: float
 
 
 def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
@@ -58,7 +64,8 @@ def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
         smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
         lost = max((_lost_of(e, given, factor) for e in dataset for given in _inputs_of(e, system)), default=0.0)
         kept = all(_keeps_samples(records[name], smooth[name]) for name in noise)
-        if kept and lost <= most and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
+        kept = kept and lost <= most and _shifted(dataset, system, noise, factor) <= MOST_SHIFTED
+        if kept and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
             signals = {name: _smoothed(dataset.signals[name], noise[name], _gain(smooth[name])) for name in noise}
             few = tuple(_thin(e, system, list(noise), factor) for e in dataset)
             said = (*dataset.warnings, THINNED.format(1.0 / max(steps), 1.0 / (max(steps) * factor)))
@@ -85,7 +92,9 @@ def local_parabolas(time: np.ndarray, values: np.ndarray, factor: int) -> Thinne
     near = np.abs(np.arange(-factor, factor + 1)) <= factor // 2
     rest = (rows - np.einsum("nwi,ni->nw", powers, fitted))[:, near]
     gain = float(np.sqrt(np.mean(inverse[:, 0, 0]))) if enough.any() else 1.0
-    return Thinned(out, gain, rest[np.isfinite(rest)])
+    known = np.isfinite(rest)
+    around = np.sum(np.square(rest), axis=1, where=known) / np.maximum(known.sum(axis=1), 1)
+    return Thinned(out, gain, rest[known], float(np.sqrt(np.max(around, initial=0.0))))
 
 
 def _smoothed(signal: SignalSpec, noise: float, gain: float) -> SignalSpec:
@@ -109,7 +118,9 @@ def _keeps_samples(records: Sequence[tuple[np.ndarray, np.ndarray]], smooth: Seq
 
 def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:
     removed = np.concatenate([of.removed for of in smooth])
-    return bool(len(removed)) and float(np.sqrt(np.mean(np.square(removed)))) < LOST * noise
+    if not len(removed) or max(of.largest for of in smooth) > JUMPS * noise:
+        return False
+    return float(np.sqrt(np.mean(np.square(removed)))) < LOST * noise
 
 
 def _lost_of(experiment: Experiment, given: InputInfo, factor: int) -> float:
@@ -117,6 +128,31 @@ def _lost_of(experiment: Experiment, given: InputInfo, factor: int) -> float:
     values = _column(experiment, given.name)
     means = np.interp(experiment.time, *_middles(experiment.time[::factor], _means(experiment, given, factor)))
     return float(np.sqrt(np.mean(np.square(values - means)) / max(np.mean(np.square(values)), 1e-300)))
+
+
+def _shifted(dataset: Dataset, system: System, noise: Mapping[str, float], factor: int) -> float:
+    """How far a command between its means, instead of the logged one, moves the motor at most, in sd of its sensor. A
+    step of the command keeps its impulse, and comes up to half a sample early or late."""
+    motor = next((s.name for s in system.info.outputs if s.axis == 0 and s.name in noise), None)
+    if motor is None or not system.info.commanded:
+        return 0.0
+    _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
+    command = system.info.inputs[0]
+    shifts = (_shift(e, command, factor) for e in dataset if command.name in e.data.columns)
+    return max(shifts, default=0.0) / (inertia * noise[motor])
+
+
+def _shift(experiment: Experiment, given: InputInfo, factor: int) -> float:
+    """The same of an experiment, for a unit inertia: what the impulses differ by between two samples, gathered."""
+    from scipy.interpolate import CubicSpline
+
+    time, impulse = experiment.time, _impulse(experiment, given)
+    kept = np.arange(0, len(time), factor)
+    if len(kept) <= SETTLES:
+        return 0.0
+    missed = impulse - CubicSpline(time[kept], impulse[kept], bc_type="natural")(time)  # what `averaged` makes
+    moved = np.concatenate([[0.0], np.cumsum(0.5 * (missed[1:] + missed[:-1]) * np.diff(time))])[kept]
+    return float(np.max(np.abs(moved[SETTLES:] - moved[:-SETTLES])))
 
 
 def _middles(time: np.ndarray, means: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -149,14 +185,19 @@ def _inputs_of(experiment: Experiment, system: System) -> list[InputInfo]:
 
 
 def _means(experiment: Experiment, given: InputInfo, factor: int) -> np.ndarray:
-    """Mean of an input from each sample that is kept to the next; it goes straight between samples unless held."""
-    time, values = experiment.time, _column(experiment, given.name)
-    over = values[:-1] if is_held(experiment, given) else 0.5 * (values[1:] + values[:-1])
-    gathered = np.concatenate([[0.0], np.cumsum(over * np.diff(time))])
+    """Mean of an input from each sample that is kept to the next."""
+    time, values, gathered = experiment.time, _column(experiment, given.name), _impulse(experiment, given)
     kept = np.append(np.arange(0, len(time), factor), len(time) - 1)
     length = np.diff(time[kept])
     rise = np.diff(gathered[kept])
     return np.asarray(np.where(length > 0, rise / np.where(length > 0, length, 1.0), values[kept[:-1]]))
+
+
+def _impulse(experiment: Experiment, given: InputInfo) -> np.ndarray:
+    """Integral of an input up to each sample; it goes straight between samples unless held."""
+    values = _column(experiment, given.name)
+    over = values[:-1] if is_held(experiment, given) else 0.5 * (values[1:] + values[:-1])
+    return np.concatenate([[0.0], np.cumsum(over * np.diff(experiment.time))])
 
 
 def _has_gaps(time: np.ndarray) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg.lapack import zgbtrf, zgbtrs
+
+from tendonlab.simulation.rests import settled
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -17,7 +19,8 @@ TINY = 1e-30  # relative imaginary step of lambda; no difference is taken, so no
 
 
 def smoothing_spline(time: np.ndarray, values: np.ndarray) -> CubicSpline:
-    """The function g with the least sum of (values - g)² + lambda·integral of g''², at the lambda of least GCV.
+    """The function g with the least sum of (values - g)² + lambda·integral of g''², at the lambda of least GCV; where
+    the record rests, the values are their mean.
 
     `time`: increasing, s, shape (n,), n >= 5; `values`: shape (n,), finite. Cost is proportional to n. Source:
     P. J. Green and B. W. Silverman, Nonparametric Regression and Generalized Linear Models, sections 2.3 and 3.2."""
@@ -25,7 +28,10 @@ def smoothing_spline(time: np.ndarray, values: np.ndarray) -> CubicSpline:
 
     step = float(time[-1] - time[0]) / (len(time) - 1)
     smoother = Smoother.of(time / step, values)
-    fitted, _ = smoother.solve(smoother.best())
+    best = smoother.best()
+    fitted, freedom = smoother.solve(best)
+    noise = float(np.sqrt(np.mean((values - fitted) ** 2) * len(values) / freedom))
+    fitted, _ = replace(smoother, values=settled(time, values, noise)).solve(best)
     return CubicSpline(time, fitted, bc_type="natural")
 
 
