@@ -7,13 +7,13 @@ import numpy as np
 from tendonlab.checking.clocks import clock_findings
 from tendonlab.checking.copies import copy_findings
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.factors import factor_findings
 from tendonlab.checking.finding import PROBLEMS, Check, Finding
 from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
+from tendonlab.checking.odd import odd_channels, odd_clocks, owned
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
-from tendonlab.checking.spikes import marks
+from tendonlab.checking.spikes import Marks, marks
 from tendonlab.checking.tensions import pushing_cables
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.simulation.system import System, require_system
@@ -38,24 +38,25 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     system = dataset.system() if system is None else require_system(system)
     marked = {} if system.info.steady else marks(dataset)
     found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
-    if pushing := list(pushing_cables(dataset, system)):  # all else is judged once these are corrected
-        found += pushing
+    first = [*pushing_cables(dataset, system), *([] if system.info.steady else odd_clocks(dataset))]
+    if first:  # all else is judged once these are corrected
+        found += first
     elif system.info.steady:
         notes.append(UNTIMED.format(kind=system.kind))
     elif (logs := read_logs(dataset, system.info, marked)) is None:
         notes.append(UNMOVED)
     else:
-        more, notes = _by_the_equation(Equation(dataset, system), logs)
+        more, notes = _by_the_equation(Equation(dataset, system), logs, marked)
         found += more
     found.sort(key=lambda f: (not f.blocks, PROBLEMS.index(f.problem)))
     return Check(dataset=dataset.name, findings=tuple(found), notes=tuple(notes))
 
 
-def _by_the_equation(equation: Equation, logs: Logs) -> tuple[list[Finding], list[str]]:
+def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
     dataset = equation.dataset
-    factors = wrong_factors(equation, logs)
+    factors = owned(wrong_factors(equation, logs), equation, logs, marked) or odd_channels(equation, logs, marked)
     if factors:  # lags are judged once these are corrected
-        return factor_findings(factors, dataset), []
+        return factors, []
     late = lags(equation, logs)
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -89,7 +90,27 @@ def _standing(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
         values = experiment.data[name].to_numpy(dtype=float)
         kept = values[np.isfinite(values)]
         if dataset.signals[name].role == "output" and len(kept) > 1 and np.ptp(kept) == 0:
-            yield _note("constant", f"{name} never changes: it reads {number(float(kept[0]))}", experiment, name)
+            reading = f"{number(float(kept[0]))} {unit_text(dataset.signals[name].si_unit)}".rstrip()
+            dead = _why_dead(dataset, experiment, name)
+            text = f"{name} never changes: it reads {reading}{dead}"
+            yield replace(_note("constant", text, experiment, name), blocks=bool(dead))
+
+
+def _why_dead(dataset: Dataset, experiment: Experiment, name: str) -> str:
+    """What shows that an output which never changes is dead, and does not rest. A coarse sensor at rest reads one value
+    as well; a noisy one never does."""
+    others = [(e, e.data[name].dropna().to_numpy(dtype=float)) for e in dataset if name in e.data.columns]
+    moving = [(e, row) for e, row in others if e is not experiment and len(row) > LEAST_STEPS and np.ptp(row) > 0]
+    for e, _ in moving:
+        if experiment.repeat is not None and e.repeat == experiment.repeat:
+            return f", and moves in its repeat {e.name}; correct or leave out this experiment"
+    if (
+        moving
+        and not any(rounding_step(row) for _, row in moving)
+        and all(white_noise_sd(row) > 0 for _, row in moving)
+    ):
+        return ", without the noise that it has in the others; correct or leave out this experiment"
+    return ""
 
 
 def _limits(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
