@@ -280,12 +280,15 @@ def test_unreadable_toml(tmp_path, content, message):
 RAW_CSV = [
     ("no header", b"", r"one.csv, row 1: is empty"),
     ("only a header", b"t,u,q,dq\n", r"one.csv: 0 samples"),
+    ("semicolons", b"t;u;q;dq\n0;1;2;3\n", r"one.csv, row 1: names are separated by semicolons; expected commas"),
+    ("tabs", b"t\tu\tq\tdq\n0\t1\t2\t3\n", r"one.csv, row 1: names are separated by tabs; expected commas"),
+    ("comment", b"# rig 3\nt,u,q,dq\n", r"one.csv, row 1: begins with #; expected the names of the columns"),
+    ("numbers", b"0,1,2,3\n1,1,2,3\n", r"one.csv, row 1: '0' is a number; expected the names of the columns"),
     ("too many values", b"t,u,q,dq\n0,1,2,3\n1,1,2,3,4\n", r"one.csv, row 3: 5 values; expected 4"),
     ("too many values everywhere", b"t,u,q,dq\n0,1,2,3,4\n1,1,2,3,4\n", r"one.csv, row 2: 5 values; expected 4"),
     ("truncated", b"t,u,q,dq\n0,1,2,3\n1,1,2\n", r"one.csv, row 3: 3 values; expected 4 as in the header"),
     ("a column twice", b"t,u,q,u,dq\n0,1,2,3,4\n1,1,2,3,4\n", r"row 1, column 'u': 2 columns of that name"),
     ("blank line", b"t,u,q,dq\n0,1,2,3\n\n1,1,2,3\n", r"one.csv, row 3, column 't': no time"),
-    ("semicolons", b"t;u;q;dq\n0;1;2;3\n", r"one.csv, column 't': is missing; expected one of t;u;q;dq"),
     ("not UTF-8", b"t,u,q,dq,\xff\n0,1,2,3,4\n", r"one.csv: byte \d+ is not UTF-8"),
 ]
 

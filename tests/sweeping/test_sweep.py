@@ -91,6 +91,14 @@ def test_each_point_is_the_simulation_with_its_parameters() -> None:
             assert_is_simulation(point["joint_velocity"].to_numpy(), alone["joint_velocity"])
 
 
+@pytest.mark.parametrize("reduce", [None, "rms"])
+def test_a_grid_without_axes_is_one_simulation(reduce: str | None) -> None:
+    swept = tl.sweep(SIM, {}, experiment=PUSHED, reduce=reduce, progress=False)
+    alone = SIM.simulate(PUSHED)["joint_angle"].to_numpy()
+    expected = alone if reduce is None else np.sqrt(np.mean(alone**2))
+    np.testing.assert_allclose(swept["joint_angle"].to_numpy(), expected, atol=1e-5)
+
+
 def test_axes_and_outputs_carry_their_units() -> None:
     swept = tl.sweep(SIM, {"coulomb": [0.02]}, experiment=PUSHED, progress=False)
     units = {str(name): swept[name].attrs["unit"] for name in ("coulomb", "t", "joint_angle", "joint_velocity")}

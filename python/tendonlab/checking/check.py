@@ -15,8 +15,8 @@ from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.checking.tensions import pushing_cables
-from tendonlab.data import Dataset, require_dataset
-from tendonlab.simulation.system import System, require_system
+from tendonlab.data import Dataset, require_dataset, simulator_of
+from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
 EXPLAINED = 0.5  # level of the residual beyond which the equation explains too little to tell a lag
@@ -35,7 +35,7 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
 
     Nothing is simulated: it takes seconds. How it works: docs/method.md."""
     require_dataset(dataset)
-    system = dataset.system() if system is None else require_system(system)
+    system = simulator_of(dataset, system)
     marked = {} if system.info.steady else marks(dataset)
     found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
     first = [*pushing_cables(dataset, system), *([] if system.info.steady else odd_clocks(dataset))]

@@ -66,7 +66,7 @@ def odd_channels(equation: Equation, logs: Logs, marked: Marks) -> list[Finding]
     odd = np.flatnonzero(excess > ODD)
     if not len(odd) or len(odd) > max(1.0, MOST * len(left)):
         return []
-    found = []
+    found: list[Finding] = []
     for i in odd:
         found += _still(equation, int(i))
         factors = _factors_of(equation, int(i), marked)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tendonlab.errors import DatasetError, ParameterError, expected_one_of
 from tendonlab.simulation.equality import EqualByFields
 from tendonlab.simulation.records import Controller, Experiment, NominalParameter, SignalSpec
-from tendonlab.simulation.system import System
+from tendonlab.simulation.system import System, require_system
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,6 +50,10 @@ class Dataset(EqualByFields):
 
     def __len__(self) -> int:
         return len(self.experiments)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether an experiment has that name, or is one of these."""
+        return any(name == experiment.name or name is experiment for experiment in self.experiments)
 
     @property
     def train(self) -> tuple[Experiment, ...]:
@@ -133,6 +137,16 @@ class Dataset(EqualByFields):
 
     def _with_role(self, role: str) -> tuple[str, ...]:
         return tuple(name for name, spec in self.signals.items() if spec.role == role)
+
+
+def simulator_of(dataset: Dataset, system: object) -> System:
+    """`system`, or the dataset's own where it is None. Raises ParameterError for anything but a system of its kind."""
+    if system is None:
+        return dataset.system()
+    checked = require_system(system)
+    if checked.kind != dataset.kind:
+        raise ParameterError(f"system is a {checked.kind}, and {dataset.name} a {dataset.kind}: expected the same kind")
+    return checked
 
 
 def require_dataset(given: object) -> None:

@@ -105,7 +105,24 @@ def _csv_start(path: Path) -> tuple[list[str], int]:
         header, first_row = next(lines, []), next(lines, [])
     if not header:
         raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
+    for separator, called in ((";", "semicolons"), ("\t", "tabs")):
+        if len(header) == 1 and separator in header[0]:
+            raise DatasetError(
+                f"{path.name}, row 1: names are separated by {called}; expected commas, and decimal points"
+            )
+    if header[0].startswith("#"):
+        raise DatasetError(f"{path.name}, row 1: begins with #; expected the names of the columns, and no comment")
+    if all(map(_is_number, header)):
+        raise DatasetError(f"{path.name}, row 1: {header[0]!r} is a number; expected the names of the columns")
     return [name.strip() for name in header], len(first_row)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _csv_frame(path: Path, num_columns: int, first_row: int) -> pd.DataFrame:

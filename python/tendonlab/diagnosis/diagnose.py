@@ -16,7 +16,7 @@ from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
 from tendonlab.diagnosis.search.select import select_effects
 from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
-from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -28,6 +28,7 @@ from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
 UNREPEATED = 0.2  # sd of friction from run to run that no friction has: the closed loop itself does not repeat
+FEWEST = 16  # samples of an experiment: fewer show no motion
 NO_REPEAT = (
     "The closed loop does not repeat, as in a limit cycle whose phase is chance. So errors are those of an injection, "
     "which follows the logged motion."
@@ -67,6 +68,7 @@ def diagnose(
     if any(finding.problem == "outliers" for finding in found.findings):
         dataset = without_outliers(dataset)
     system = dataset.system() if system is None else system
+    _require_samples(dataset, system)
     few = thinned(dataset, system)
     loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
     with open_workshop(names, progress=progress) as shop:
@@ -86,6 +88,13 @@ def diagnose(
         why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
     return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
+
+
+def _require_samples(dataset: Dataset, system: System) -> None:
+    """Raise DatasetError for an experiment too short to show a motion."""
+    for experiment in dataset.experiments if not system.info.steady else ():
+        if (num := len(experiment.data)) < FEWEST:
+            raise DatasetError(f"{experiment.name} has {num} samples: expected at least {FEWEST}; leave it out")
 
 
 def _loop(dataset: Dataset, system: System) -> tuple[Case | None, tuple[str, ...]]:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.data import Dataset, Experiment
+from tendonlab.data import Dataset, Experiment, simulator_of
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.noise import blocks_of, sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.catalog import PORT_QUANTITIES
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
-from tendonlab.simulation.system import System, require_system
+from tendonlab.simulation.system import System
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
@@ -227,7 +227,7 @@ def make_case(
     default as `fine_enough` has it for the sensors' noise.
 
     Raises DatasetError where a signal that the replay needs was not logged."""
-    system = dataset.system() if system is None else require_system(system)
+    system = simulator_of(dataset, system)
     experiments = dataset.experiments if experiments is None else experiments
     replay = choose_replay(dataset, system)
     prepared = tuple(_judged(prepare(e, system, replay), e) for e in experiments)

@@ -15,7 +15,7 @@ import pandas as pd
 
 from tendonlab import _core
 from tendonlab.arguments import within
-from tendonlab.data import require_dataset
+from tendonlab.data import require_dataset, simulator_of
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
@@ -27,7 +27,7 @@ from tendonlab.identification.result import Identification
 from tendonlab.progress import track
 from tendonlab.seed import generator
 from tendonlab.simulation.catalog import unit
-from tendonlab.simulation.system import System, require_system
+from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def identify(
     chosen = dataset.train if experiments is None else tuple(dataset[n] for n in _names("experiments", experiments))
     if not chosen:
         raise DatasetError(f"{dataset.name}: no training experiment; expected at least one with split = train")
-    base = dataset.system() if system is None else require_system(system)
+    base = simulator_of(dataset, system)
     tolerance = None if tolerance is None else within("tolerance", tolerance, 1e-14, 0.1)
     case = make_case(dataset, base, experiments=[replace(e, split="train") for e in chosen], tolerance=tolerance)
     problem = _problem(case, effects, START_SHARE)

@@ -23,7 +23,7 @@ def dataset_of(layout: Layout, variables: Mapping[str, Any], messages: np.ndarra
     found = {}
     for name, values in variables.items():
         rest = values.shape[2:]
-        found[name] = ((*leading, *layout.trailing(rest)), values.reshape(*shape, *rest), layout.attributes(name))
+        found[name] = ((*leading, *layout.trailing(rest)), values.reshape((*shape, *rest)), layout.attributes(name))
     system = layout.system
     coordinates: dict[str, Any] = {
         name: (dims, values) if name == "point" else (dims, values, {"unit": system.unit(name)})
