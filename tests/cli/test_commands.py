@@ -93,6 +93,13 @@ def test_simulate_compares_with_what_was_measured(capsys: Printed, tiny: Path, t
     pd.testing.assert_frame_equal(written, expected, rtol=1e-8)  # nine digits are written
 
 
+def test_simulate_says_how_it_replays(capsys: Printed, tiny: Path) -> None:
+    assert main(["simulate", str(tiny)]) == 0
+    assert "Replayed from the logged command alone" in capsys.readouterr().out
+    assert main(["simulate", str(demo.bundled())]) == 0
+    assert "in the closed loop of the known controller" in capsys.readouterr().out
+
+
 def test_simulate_prints_nothing_to_stderr(tiny: Path, tmp_path: Path) -> None:
     done = run("simulate", tiny, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")

@@ -240,7 +240,7 @@ def _identify(given: Arguments) -> int:
 
 
 def _simulate(given: Arguments) -> int:
-    from tendonlab.cli.text import errors_text
+    from tendonlab.cli.text import errors_text, replay_text
     from tendonlab.data import load
     from tendonlab.sweeping.points import refuse_conditions
 
@@ -249,10 +249,11 @@ def _simulate(given: Arguments) -> int:
     experiment = _experiment(rig, given.experiment)
     changes = _settings(given.set)
     refuse_conditions(experiment, changes)
-    run = _changed(rig.system(), given.effects, changes).simulate(experiment)
+    simulator = _changed(rig.system(), given.effects, changes)
+    run = simulator.simulate(experiment)
     size = f"{len(experiment.data)} samples, {experiment.duration:g} s"
     print(f"{rig.name}, {experiment.name} ({experiment.split}): {size}\n")
-    print(errors_text(run, experiment))
+    print(f"{errors_text(run, experiment)}\n\n{replay_text(simulator, experiment)}")
     if given.out is not None:
         run.outputs.to_csv(given.out, index_label="t", float_format="%.9g")
         print(f"\nWritten: {given.out}")

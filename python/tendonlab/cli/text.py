@@ -11,12 +11,14 @@ from tendonlab.diagnosis.confusions import confusions
 from tendonlab.report.numbers import estimate, number, prefixed, unit_text
 from tendonlab.report.words import listing
 from tendonlab.simulation.catalog import parameter_unit, unit
+from tendonlab.simulation.prepare import choose_loop
 
 if TYPE_CHECKING:
     from tendonlab.checking.finding import Check, Finding
     from tendonlab.data import Experiment
     from tendonlab.identification.result import Identification
     from tendonlab.simulation.catalog import EffectInfo, SystemInfo
+    from tendonlab.simulation.system import System
     from tendonlab.simulation.trajectory import Trajectory
 
 WIDEST = 110  # columns: longer lines are hard to read, however wide the terminal
@@ -133,6 +135,16 @@ def errors_text(run: Trajectory, experiment: Experiment) -> str:
         factor, unit = prefixed(shown, run.units[signal])
         rows.append([str(signal), unit, *(number(factor * value) for value in shown)])
     return table(rows, right=range(2, 5))
+
+
+def replay_text(system: System, experiment: Experiment) -> str:
+    """How `tendonlab simulate` replays an experiment, and how that differs from a diagnosis."""
+    if choose_loop(experiment, system.controller, "auto").kind == "controller":
+        return wrapped("Replayed in the closed loop of the known controller.")
+    if not system.info.commanded:
+        return wrapped("Replayed from the logged inputs alone.")
+    text = "Replayed from the logged command alone: errors add up, and where a joint sticks they stay."
+    return wrapped(f"{text} A diagnosis pulls the simulated motor to the measured one.")
 
 
 def system_text(info: SystemInfo, *, axis: str) -> str:

@@ -65,6 +65,7 @@ def _draw(ax: Axes, where: WhereMap, *, stage: str, scale: Normalize) -> QuadMes
     cells = np.ma.masked_invalid(getattr(where, stage))
     mesh = ax.pcolormesh(where.x_edges, where.y_edges, cells, norm=scale, cmap="cividis", lw=0, rasterized=True)
     ax.set(xlabel=label(where.x, where.x_unit), ylabel=label(where.y, where.y_unit))
+    ax.locator_params(axis="x", nbins=5)  # small numbers are long, and the maps stand side by side
     ax.set_title(f"{capital(where.place)}, {STAGES[stage]}", loc="left")
     if where.x_edges[0] < 0 < where.x_edges[-1]:
         ax.axvline(0.0, color=MUTED, lw=0.6, ls=":")
