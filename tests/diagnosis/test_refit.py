@@ -108,10 +108,12 @@ class Fits:
         return ("settled", fit)
 
 
-def fit_of(misfit: float = 1.0, *, cost: float = 1.0, converged: bool = True) -> Any:
-    return SimpleNamespace(
-        whitened_square=misfit, cost=cost, converged=converged, system="fitted", initial=((misfit,),)
+def fit_of(misfit: float = 1.0, *, cost: float = 1.0, gain: float = 0.0, converged: bool = True) -> Any:
+    fit = SimpleNamespace(
+        whitened_square=misfit, cost=cost, converged=converged, system="fitted", initial=((misfit,),), evidence=gain
     )
+    fit.counted = lambda: fit
+    return fit
 
 
 class Rig:
@@ -129,7 +131,9 @@ def tuned() -> Any:
         SimpleNamespace(name=name, mean=mean, value=lambda x: 10.0 * x)
         for name, mean in [("inertia", 0.2), ("friction", 0.3), ("added", 0.4)]
     ]
-    return SimpleNamespace(free=free, added=("a",), initial=((0.0,),), system="base", cost=100.0, evidence=0.0)
+    base = SimpleNamespace(free=free, added=("a",), initial=((0.0,),), system="base", cost=100.0, evidence=0.0)
+    base.counted = lambda: base
+    return base
 
 
 def test_the_start_from_believed_values_leaves_out_what_was_tuned(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,15 +149,21 @@ def test_the_start_from_believed_values_leaves_out_what_was_tuned(monkeypatch: p
     assert posed == {"system": {"inertia": 2.0}, "added": ("a", "b")}
 
 
-@pytest.mark.parametrize(("cost", "is_whole"), [(51.0, False), (49.0, True)])
-def test_a_fit_that_misses_its_goal_is_a_sketch(cost: float, is_whole: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("cost", "gain", "is_whole", "num_fits"), [(51.0, 4.0, False, 1), (49.0, 4.0, True, 1), (51.0, 6.0, True, 2)]
+)
+def test_a_fit_that_misses_its_goal_is_a_sketch_unless_it_gains_half_of_what_a_rival_does(
+    cost: float, gain: float, is_whole: bool, num_fits: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
     monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
-    fit = fit_of(cost=cost)
-    fitter: Any = Fits(fit)
-    worth, whole = refits._fit(fitter, tuned(), {"b": {}}, None, pace=0.0)
-    assert (worth, whole) == (("sketch", fit), fit if is_whole else None)
-    assert len(fitter.asked) == 1
+    fits = [fit_of(cost=cost, gain=gain), fit_of(cost=10.0, gain=9.0)][:num_fits]
+    fitter: Any = Fits(*fits)
+    fitter.releveled = lambda fit: fit
+    worth, whole = refits._fit(fitter, tuned(), {"b": {}}, None, pace=10.0)
+    assert (worth, whole) == (fits[-1], fits[-1] if is_whole else None)
+    assert len(fitter.asked) == num_fits
+    assert all(asked.get("goal") is None for asked in fitter.asked[1:])
     assert fitter.asked[0]["added"] == ("a", "b")
     assert (fitter.asked[0]["goal"], fitter.asked[0]["goal_within"]) == (50.0, SKETCH)
 

@@ -99,19 +99,31 @@ def _fit(
     `from_nominal`: start at the nominal values of the simulator instead of the tuned ones. Raises NumericalError or
     ParameterError where that fails."""
     added = (*base.added, *effect)
-    goal = _goal(fitter, base, best, pace)
+    needed = _needed(base, best, pace)
+    goal = _goal(fitter, base, needed)
     system, initial = extended(base.system, effect), base.initial
     if from_nominal:
         system, initial = _annealed(fitter, base, system, added)
     fit = fitter.fit(system, added=added, initial=initial, max_iterations=MAX_ITERATIONS, goal=goal, goal_within=SKETCH)
-    return fitter.releveled(fit), fit if fit.cost <= goal else None
+    worth = fitter.releveled(fit)
+    if fit.cost <= goal:
+        return worth, fit
+    if worth.counted().evidence - base.counted().evidence < needed:
+        return worth, None
+    # Beliefs that the base strains, and noise that differs, count otherwise in cost than in evidence.
+    fit = fitter.fit(fit.system, added=added, initial=fit.initial, max_iterations=MAX_ITERATIONS)
+    return fitter.releveled(fit), fit
 
 
-def _goal(fitter: Fitter, base: Fitted, best: Fitted | None, pace: float) -> float:
-    """The cost above which a sketch lies too far behind the rival or the best fit so far."""
+def _needed(base: Fitted, best: Fitted | None, pace: float) -> float:
+    """Nats over the base that a sketch must gain, or it lies too far behind the rival or the best fit so far."""
     here = base.counted().evidence
     rival = CATCH_UP * (pace - here)
-    needed = rival if best is None else max(rival, best.counted().evidence - BEHIND - here)
+    return rival if best is None else max(rival, best.counted().evidence - BEHIND - here)
+
+
+def _goal(fitter: Fitter, base: Fitted, needed: float) -> float:
+    """About the cost above which a sketch gains less than that."""
     if fitter.floor.repeated:
         return base.cost - needed
     rows = sum(len(run.residual) for run in base.runs)  # a gain under noise of one's own, in cost under the base's
