@@ -254,13 +254,12 @@ def evident(evidence: float, **more: Any) -> Any:
 def test_a_sketch_is_finished_where_it_can_reach_half_of_the_rivals_gain() -> None:
     base = evident(-100.0, cost=90.0, runs=[SimpleNamespace(residual=np.zeros(50))] * 2)
     repeated, alone = fitter_of(repeated=True), fitter_of(repeated=False)
-    assert _goal(repeated, base, _needed(base, None, -60.0)) == pytest.approx(90.0 - 0.5 * 40.0)
-    assert _goal(repeated, base, _needed(base, evident(-30.0), -60.0)) == pytest.approx(
-        90.0 - 20.0
-    )  # 50 nats behind the best
-    assert _goal(repeated, base, _needed(base, evident(20.0), -60.0)) == pytest.approx(90.0 - 70.0)
-    assert _goal(alone, base, _needed(base, None, -60.0)) == pytest.approx(90.0 * np.exp(-2.0 * 20.0 / 100))
-    assert 1e300 < _goal(alone, base, _needed(base, None, -1e9)) < np.inf  # a rival far behind the base sets no goal
+    assert _needed(base, None, -60.0) == pytest.approx(0.5 * 40.0)
+    assert _needed(base, evident(-30.0), -60.0) == pytest.approx(20.0)  # 50 nats behind the best
+    assert _needed(base, evident(20.0), -60.0) == pytest.approx(70.0)
+    assert _goal(repeated, base, 20.0) == pytest.approx(90.0 - 20.0)
+    assert _goal(alone, base, 20.0) == pytest.approx(90.0 * np.exp(-2.0 * 20.0 / 100))
+    assert 1e300 < _goal(alone, base, -1e9) < np.inf  # a rival far behind the base sets no goal
 
 
 def test_a_parameter_three_sd_from_its_prior_is_strained_if_it_was_stated() -> None:
