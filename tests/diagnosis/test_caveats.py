@@ -67,7 +67,9 @@ def test_a_value_stated_without_a_standard_deviation_pulls_nothing(sd: float | N
 
 def test_changes_that_make_the_held_out_error_larger_are_named() -> None:
     (tuning,) = said(errors=(2.0, 3.0, 2.5))
-    assert tuning == "Tuning the parameters made the held-out error larger: 2 noise floors before, 3 after."
+    assert (
+        tuning == "Tuning the parameters made the held-out error larger: 2 noise floors before, 3 after; with a:b, 2.5."
+    )
     (effect,) = said(errors=(9.0, 3.0, 4.0))
     assert effect == "Adding a:b made the held-out error larger: 3 noise floors before, 4 after."
     assert said(errors=(9.0, 3.0, 4.0), added=()) == ()

@@ -52,9 +52,10 @@ def _worse(stages: Mapping[str, Replayed], floor: Floor, added: Sequence[str]) -
     error = {stage: float(np.sqrt(heldout.level(of, floor))) for stage, of in stages.items()}
     steps = [("nominal", "refitted", "Tuning the parameters")]
     steps += [("refitted", "with_effect", f"Adding {' and '.join(added)}")] if added else []
+    whole = f"; with {' and '.join(added)}, {number(error['with_effect'])}" if added else ""
     return [
         f"{change} made the held-out error larger: {number(error[before])} noise floors before, "
-        f"{number(error[after])} after."
+        f"{number(error[after])} after{whole if before == 'nominal' else ''}."
         for before, after, change in steps
         if error[after] ** 2 > WORSE * max(1.0, error[before] ** 2)
     ]
