@@ -41,6 +41,16 @@ def test_a_creep_that_leaves_the_noise_is_no_rest(speed: float) -> None:
     np.testing.assert_array_equal(settled(time, values, NOISE), values)
 
 
+def test_a_rest_begins_where_a_slow_stop_ends() -> None:
+    """The last 10 noise sd of a stop take 0.3 s, too slow to be seen from one window to the next."""
+    time = np.arange(0.0, 3.0, 0.004)
+    motion = np.where(time < 1.3, 10.0 * NOISE * ((1.3 - time) / 0.3) ** 2, 0.0)
+    values = motion + NOISE * np.random.default_rng(4).normal(size=len(time))
+    found = settled(time, values, NOISE)
+    assert np.mean(found[time > 1.4] != values[time > 1.4]) > 0.9
+    assert np.abs(found - motion)[found != values].max() < 2.5 * NOISE
+
+
 @pytest.mark.parametrize("num", [2, 5, 15, 40])
 def test_a_record_too_short_to_rest_stays(num: int) -> None:
     time = np.arange(num) * 0.01

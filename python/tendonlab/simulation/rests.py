@@ -7,6 +7,7 @@ import numpy as np
 HALF, LEAST = (0.03, 8), (0.2, 20)  # s and samples at least: of half a window, and of a rest
 MOVES = 4.0  # sd by which the means of two neighbouring halves differ where something moves
 STAYS = 4.0  # sd of the drift and of the mean square over a whole rest
+WHOLE = 0.5  # share of a stretch without visible motion that must rest: a steady creep is no rest in its middle
 
 
 def settled(time: np.ndarray, values: np.ndarray, noise: float) -> np.ndarray:
@@ -18,11 +19,25 @@ def settled(time: np.ndarray, values: np.ndarray, noise: float) -> np.ndarray:
     half, least = (max(few, int(np.ceil(seconds / step))) for seconds, few in (HALF, LEAST))
     out = np.array(values)
     for start, stop in _quiet(values, half, MOVES * noise * np.sqrt(2.0 / half)):
-        trimmed = (start + half // 2 if start else 0, stop - half // 2 if stop < len(values) else stop)
-        inside = slice(*trimmed)  # a motion that is slower than the threshold begins or ends there
-        if stop - start >= least + half and _stays(time[inside], values[inside], noise):
-            out[inside] = np.mean(values[inside])
+        rest = _longest(time, values, noise, (start, stop), half, least)
+        out[rest] = np.mean(values[rest]) if rest.stop > rest.start else out[rest]
     return out
+
+
+def _longest(
+    time: np.ndarray, values: np.ndarray, noise: float, quiet: tuple[int, int], half: int, least: int
+) -> slice:
+    """The longest part of a `quiet` stretch that rests, empty where there is none: a motion too slow to be seen at once
+    may end or begin there."""
+    start, stop = quiet
+    fewest = max(least, int(WHOLE * (stop - start)))
+    start, stop = start + (half // 2 if start else 0), stop - (half // 2 if stop < len(values) else 0)
+    for steps in range((stop - start - fewest) // half + 1):
+        for before in range(steps + 1):
+            part = slice(start + before * half, stop - (steps - before) * half)
+            if _stays(time[part], values[part], noise):
+                return part
+    return slice(start, start)
 
 
 def _quiet(values: np.ndarray, half: int, least: float) -> np.ndarray:
@@ -40,8 +55,9 @@ def _quiet(values: np.ndarray, half: int, least: float) -> np.ndarray:
 
 
 def _stays(time: np.ndarray, values: np.ndarray, noise: float) -> bool:
-    """Whether the values neither drift nor spread by more than their noise."""
+    """Whether the values neither drift by more than their noise, or than chance has them drift, nor spread further."""
     away, since = values - np.mean(values), time - np.mean(time)
     drift = float(since @ away) / np.sqrt(float(since @ since))
     spread = float(np.mean(away**2)) / noise**2 - 1.0
-    return bool(abs(drift) < STAYS * noise and spread < STAYS * np.sqrt(2.0 / len(values)))
+    whole = np.sqrt(len(values) / 12.0)  # of a drift by the noise from one end to the other
+    return bool(abs(drift) < max(STAYS, whole) * noise and spread < STAYS * np.sqrt(2.0 / len(values)))
