@@ -24,6 +24,13 @@ def test_a_simulator_of_another_kind_is_refused(draft, write, entry):
         entry(load(write(draft)), system=other)
 
 
+def test_a_column_may_have_any_name_that_the_dataset_says(draft, write):
+    """Even one that begins with #, as numpy.savetxt writes the first."""
+    draft.frames = {name: frame.rename(columns={"t": "# t"}) for name, frame in draft.frames.items()}
+    draft.toml["time"] = {**draft.toml.get("time", {}), "column": "# t"}
+    assert load(write(draft)).name == "tiny"
+
+
 def test_a_run_of_a_few_samples_is_no_motion_to_diagnose(draft, write):
     dataset = load(write(draft))
     short = tuple(replace(e, data=e.data.iloc[:3]) for e in dataset)

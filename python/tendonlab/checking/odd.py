@@ -72,10 +72,8 @@ def odd_channels(equation: Equation, logs: Logs, marked: Marks) -> list[Finding]
         factors = _factors_of(equation, int(i), marked)
         if factors and np.all(factors[0].fit.level < ALIKE * usual):
             found += _told_of(equation, int(i), factors)
-    usual_ones = np.argsort(excess)[: len(left) - len(odd)][
-        -2:
-    ]  # the least usual of them: do they ask for one as well?
-    if found and any(_factors_of(equation, int(i), marked) for i in usual_ones):
+    others = np.argsort(excess)[: len(left) - len(odd)]
+    if found and any(_factors_of(equation, int(i), marked) for i in others[-2:]):  # the least usual ask for one, too
         return []
     return found
 

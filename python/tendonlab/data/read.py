@@ -82,6 +82,8 @@ def _read_csv(path: Path, columns: Sequence[str]) -> dict[str, np.ndarray]:
 
     try:
         header, first_row = _csv_start(path)
+        if not set(columns) <= set(header):
+            _refuse_other_headers(path.name, header)
         for column in columns:
             if header.count(column) > 1:
                 problem = f"{header.count(column)} columns of that name"
@@ -105,16 +107,18 @@ def _csv_start(path: Path) -> tuple[list[str], int]:
         header, first_row = next(lines, []), next(lines, [])
     if not header:
         raise DatasetError(f"{path.name}, row 1: is empty; expected a header with the names of the columns")
+    return [name.strip() for name in header], len(first_row)
+
+
+def _refuse_other_headers(file: str, header: Sequence[str]) -> None:
+    """Raise DatasetError where a header that lacks a column is none of names between commas."""
     for separator, called in ((";", "semicolons"), ("\t", "tabs")):
         if len(header) == 1 and separator in header[0]:
-            raise DatasetError(
-                f"{path.name}, row 1: names are separated by {called}; expected commas, and decimal points"
-            )
+            raise DatasetError(f"{file}, row 1: names are separated by {called}; expected commas, and decimal points")
     if header[0].startswith("#"):
-        raise DatasetError(f"{path.name}, row 1: begins with #; expected the names of the columns, and no comment")
+        raise DatasetError(f"{file}, row 1: begins with #; expected the names of the columns, and no comment")
     if all(map(_is_number, header)):
-        raise DatasetError(f"{path.name}, row 1: {header[0]!r} is a number; expected the names of the columns")
-    return [name.strip() for name in header], len(first_row)
+        raise DatasetError(f"{file}, row 1: {header[0]!r} is a number; expected the names of the columns")
 
 
 def _is_number(text: str) -> bool:
