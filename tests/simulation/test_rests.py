@@ -7,6 +7,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab import _core
+from tendonlab.simulation import rests
 from tendonlab.simulation.prepare import Replay, prepare
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.rests import settled
@@ -49,6 +50,21 @@ def test_a_rest_begins_where_a_slow_stop_ends() -> None:
     found = settled(time, values, NOISE)
     assert np.mean(found[time > 1.4] != values[time > 1.4]) > 0.9
     assert np.abs(found - motion)[found != values].max() < 2.5 * NOISE
+
+
+def test_a_record_without_noise_stays() -> None:
+    time = np.arange(0.0, 3.0, 0.01)
+    np.testing.assert_array_equal(settled(time, time**2, 0.0), time**2)
+
+
+def test_a_long_slow_motion_is_searched_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A minute at 1 kHz, of a motion that no window sees: some hundreds of looks, not one for each pair of ends."""
+    looks = []
+    stays = rests._stays
+    monkeypatch.setattr(rests, "_stays", lambda *given: looks.append(1) or stays(*given))
+    time = np.arange(0.0, 60.0, 0.001)
+    settled(time, 2.0 * NOISE * np.sin(0.3 * time) + NOISE * np.random.default_rng(5).normal(size=len(time)), NOISE)
+    assert 0 < len(looks) < 1000
 
 
 @pytest.mark.parametrize("num", [2, 5, 15, 40])

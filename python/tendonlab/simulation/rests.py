@@ -7,6 +7,7 @@ import numpy as np
 HALF, LEAST = (0.03, 8), (0.2, 20)  # s and samples at least: of half a window, and of a rest
 MOVES = 4.0  # sd by which the means of two neighbouring halves differ where something moves
 STAYS = 4.0  # sd of the drift and of the mean square over a whole rest
+PARTS = 32  # of a stretch without visible motion, at most, that are tried as its ends
 WHOLE = 0.5  # share of a stretch without visible motion that must rest: a steady creep is no rest in its middle
 
 
@@ -15,6 +16,8 @@ def settled(time: np.ndarray, values: np.ndarray, noise: float) -> np.ndarray:
     in a simulator that sticks it eases friction.
 
     `time` (n,), s, increasing; `values` (n,); `noise`: sd of the values."""
+    if noise == 0.0:
+        return values
     step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
     half, least = (max(few, int(np.ceil(seconds / step))) for seconds, few in (HALF, LEAST))
     out = np.array(values)
@@ -32,9 +35,10 @@ def _longest(
     start, stop = quiet
     fewest = max(least, int(WHOLE * (stop - start)))
     start, stop = start + (half // 2 if start else 0), stop - (half // 2 if stop < len(values) else 0)
-    for steps in range((stop - start - fewest) // half + 1):
-        for before in range(steps + 1):
-            part = slice(start + before * half, stop - (steps - before) * half)
+    cut = max(half, (stop - start) // PARTS)
+    for cuts in range((stop - start - fewest) // cut + 1):
+        for before in range(cuts + 1):
+            part = slice(start + before * cut, stop - (cuts - before) * cut)
             if _stays(time[part], values[part], noise):
                 return part
     return slice(start, start)
