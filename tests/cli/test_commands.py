@@ -202,6 +202,7 @@ def test_blind_is_among_the_commands(capsys: Printed, tmp_path: Path) -> None:
         (["simulate", "{tiny}", "--out", "{tiny}"], "is a folder; expected the name of a file"),
         (["identify", "{tiny}", "--out", "{tiny}/absent/fit.json"], "absent/fit.json: cannot be written"),
         (["diagnose", "{tiny}", "--out", "{tiny}/run-1.csv"], "run-1.csv' is a file: expected a folder"),
+        (["sweep", "{tiny}", "--grid", "inertia=0.4", "inertia=0.5"], "--grid inertia=0.5: duplicate name 'inertia'"),
         (["demo", "--out", "{tiny}/run-1.csv"], "run-1.csv' is a file: expected a folder"),
         (["diagnose", "emps"], "`tendonlab datasets prepare emps` fetches this recording"),
         (["systems", "rigid_join"], "did you mean 'rigid_joint'?"),

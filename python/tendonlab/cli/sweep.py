@@ -17,8 +17,15 @@ if TYPE_CHECKING:
 
 
 def grid_from(texts: Sequence[str]) -> dict[str, np.ndarray]:
-    """A grid from "name=1,2,3" or "name=first:last:number". Raises ParameterError for any other text."""
-    return {name: _axis(text, values) for text in texts for name, _, values in [text.partition("=")]}
+    """A grid from "name=1,2,3" or "name=first:last:number". Raises ParameterError for any other text, and for a name
+    given twice."""
+    grid: dict[str, np.ndarray] = {}
+    for text in texts:
+        name, _, values = text.partition("=")
+        if name in grid:
+            raise ParameterError(f"--grid {text}: duplicate name {name!r}; expected each parameter once")
+        grid[name] = _axis(text, values)
+    return grid
 
 
 def _axis(text: str, values: str) -> np.ndarray:
