@@ -119,6 +119,15 @@ def test_missing_files_are_an_error_that_says_where_it_looked(nowhere, tmp_path)
         assert place in str(caught.value)
 
 
+def test_without_a_network_the_error_is_one_short_sentence(nowhere, tmp_path, monkeypatch):
+    monkeypatch.setenv("TENDONLAB_REGISTRY", "http://localhost:1")  # nothing listens on that port
+    with pytest.raises(
+        DatasetError, match=r"failed: no connection to localhost:1; expected its folder as source"
+    ) as of:
+        prepare("emps", out=tmp_path / "rig", progress=False)
+    assert "HTTPConnectionPool" not in str(of.value)
+
+
 def _record(**changes):
     samples = np.arange(4.0)[:, None]
     gains = {"kp": 160.18, "kv": 243.45, "gtau": 35.0}

@@ -68,6 +68,17 @@ def test_a_grid_in_a_store_has_the_dimensions_of_the_grid(name: str, tmp_path: P
     assert tl.sweep(SIM, grid, out=tmp_path / name, **given).compute().identical(tl.sweep(SIM, grid, **given))
 
 
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_file_in_place_of_a_store_is_refused_before_anything_is_simulated(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    counts = count_simulated(monkeypatch)
+    with pytest.raises(tl.ParameterError, match=f"{name}' is a file: expected a new name, or the store of this sweep"):
+        swept(tmp_path / name)
+    assert counts == []
+
+
 def test_other_programs_read_the_stores(tmp_path: Path) -> None:
     kept = swept(tmp_path / "runs.zarr", outputs=["joint_angle"])
     swept(tmp_path / "runs.parquet", outputs=["joint_angle"])

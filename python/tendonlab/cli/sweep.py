@@ -43,6 +43,9 @@ def table_from(file: Path) -> pd.DataFrame:
     """The table of points in a CSV file. Raises DatasetError where there is none."""
     import pandas as pd
 
+    if not file.is_file():
+        problem = "is a folder" if file.is_dir() else "no such file"
+        raise DatasetError(f"{file}: {problem}; expected a CSV with one column per parameter")
     try:
         return pd.read_csv(file)
     except ValueError as error:

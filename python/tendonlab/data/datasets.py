@@ -14,7 +14,7 @@ from urllib.parse import urlparse
 from urllib.request import urlopen
 
 from tendonlab.data.emps import write_emps
-from tendonlab.errors import DatasetError, expected_one_of
+from tendonlab.errors import DatasetError, ParameterError, expected_one_of
 
 SOURCE_VARIABLE = "TENDONLAB_DATA"
 REGISTRY_VARIABLE = "TENDONLAB_REGISTRY"
@@ -77,14 +77,16 @@ def prepare(
     Its files are looked for in `source`, in the folder that TENDONLAB_DATA names, in the cache, and then downloaded
     from their public home, or from `registry` (or TENDONLAB_REGISTRY), an address that holds them as <name>/<file>.
     Every file is checked against its sha256. Running it again gives the same folder. Raises DatasetError: unknown name,
-    files not found or changed, or an `out` whose dataset.toml somebody edited."""
+    files not found or changed, or an `out` whose dataset.toml somebody edited; ParameterError where `out` is a file."""
     dataset = _ALL.get(name)
     if dataset is None:
         raise DatasetError(f"{name!r} is no public dataset; {expected_one_of(name, _ALL)}")
+    folder = Path(name) if out is None else Path(out)
+    if folder.exists() and not folder.is_dir():
+        raise ParameterError(f"out = {str(folder)!r} is a file: expected a folder")
     files = {
         file.name: _find(dataset, file, source=source, registry=registry, progress=progress) for file in dataset.files
     }
-    folder = Path(name) if out is None else Path(out)
     dataset.write(files, folder)
     return folder
 
@@ -120,7 +122,6 @@ def _download(
 
     base = registry or os.environ.get(REGISTRY_VARIABLE)
     address = f"{base.rstrip('/')}/{dataset.name}/{file.name}" if base else f"{dataset.home}/{file.name}"
-    looked = ", ".join(str(place) for place in searched) or f"no folder (neither source nor {SOURCE_VARIABLE} is given)"
     pooch.get_logger().setLevel("WARNING")
     downloader = _copy_file if urlparse(address).scheme == "file" else pooch.HTTPDownloader(progressbar=progress)
     cache = Path(pooch.os_cache("tendonlab")) / dataset.name
@@ -129,9 +130,19 @@ def _download(
             address, known_hash=f"sha256:{file.sha256}", fname=file.name, path=cache, downloader=downloader
         )
     except (OSError, ValueError) as error:  # requests' own errors are OSErrors
-        problem = f"not found in {looked}, nor in the cache {cache}, and the download of {address} failed: {error}"
-        raise DatasetError(f"{file.name}: {problem}") from error
+        looked = ", ".join(map(str, [*searched, cache]))
+        problem = f"not found in {looked}, and the download of {address} failed: {_reason(error, address)}"
+        raise DatasetError(f"{file.name}: {problem}; expected its folder as source or {SOURCE_VARIABLE}") from error
     return Path(found)
+
+
+def _reason(error: Exception, address: str) -> str:
+    """Why a download failed. Without a network, requests tells of its sockets and retries in half a page."""
+    import requests
+
+    if isinstance(error, requests.ConnectionError | requests.Timeout):
+        return f"no connection to {urlparse(address).netloc}"
+    return str(error)
 
 
 def _copy_file(url: str, output_file: Any, pooch: Any) -> None:

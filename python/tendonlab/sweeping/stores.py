@@ -21,7 +21,8 @@ NEEDS = {".zarr": ("zarr", "dask"), ".parquet": ("pyarrow", "dask")}
 
 
 def checked_out(out: str | os.PathLike[str] | None) -> Path | None:
-    """The path of a store. Raises ParameterError for a name that says no format, or without the library it needs."""
+    """The path of a store. Raises ParameterError for a name that says no format, without the library it needs, and
+    where a file has that name."""
     if out is None:
         return None
     path = Path(out)
@@ -32,6 +33,8 @@ def checked_out(out: str | os.PathLike[str] | None) -> Path | None:
         raise ParameterError(f"out = {str(out)!r}: needs {' and '.join(missing)}; pip install 'tendonlab[sweep]'")
     if not path.parent.is_dir():
         raise ParameterError(f"out = {str(out)!r}: no folder {str(path.parent)!r}; expected an existing one")
+    if path.is_file():
+        raise ParameterError(f"out = {str(out)!r} is a file: expected a new name, or the store of this sweep")
     return path
 
 
