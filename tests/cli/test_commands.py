@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -248,6 +249,33 @@ def test_ctrl_c_is_one_line_and_exit_code_130(capsys: Printed, monkeypatch: pyte
     monkeypatch.setattr("tendonlab.data.load", interrupted)
     assert main(["simulate", "anything"]) == 130
     assert complaint(capsys) == "tendonlab: interrupted\n"
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_sweep_that_is_interrupted_says_what_is_kept_and_ends_with_130(
+    capsys: Printed, monkeypatch: pytest.MonkeyPatch, tiny: Path, tmp_path: Path, kept: bool
+) -> None:
+    """Chunks of a point; Ctrl-C arrives after the second of six runs."""
+    out = tmp_path / "runs.zarr"
+    command = ["sweep", str(tiny), "--grid", "inertia=0.4:0.5:6", "--quiet", *(["--out", str(out)] if kept else [])]
+
+    def interrupted(steps: Any, **_: Any) -> Any:
+        for done, step in enumerate(steps):
+            if done == 2:
+                raise KeyboardInterrupt
+            yield step
+
+    with monkeypatch.context() as during:
+        during.setattr("tendonlab.sweeping.sweep.track", interrupted)
+        for seconds in ("FIRST_SECONDS", "TASK_SECONDS"):
+            during.setattr(f"tendonlab.sweeping.sizes.{seconds}", 0.0)
+        assert main(command) == 130
+    printed = capsys.readouterr()
+    left = int(re.findall(r"6 runs, 0 failed, (\d) interrupted", printed.out)[0])
+    resumed = f"stored in {out}; the same command does the rest" if kept else "done, none stored: --out FOLDER stores"
+    assert f"tendonlab: interrupted; {6 - left} of 6 runs {resumed}" in printed.err
+    assert main(command) == 0
+    assert "6 runs, 0 failed\n" in capsys.readouterr().out
 
 
 def test_a_reader_that_leaves_is_no_error(tmp_path: Path) -> None:

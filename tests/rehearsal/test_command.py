@@ -60,6 +60,31 @@ def test_a_plan_needs_no_logs(planned: Path, capsys: pytest.CaptureFixture[str])
     assert "the stated controller drives the rigs along the reference" in " ".join(capsys.readouterr().out.split())
 
 
+@pytest.mark.cpu(15)
+def test_ctrl_c_says_what_is_kept_and_ends_with_130(
+    pendulum: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    stub: Callable[[tl.Dataset], Diagnosis],
+) -> None:
+    calls: list[str] = []
+
+    def diagnose(dataset: tl.Dataset, **_: Any) -> Diagnosis:
+        calls.append(dataset.name)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return stub(dataset)
+
+    monkeypatch.setattr(module, "library_diagnose", diagnose)
+    assert main(["rehearse", str(pendulum), *FEW, "--out", str(tmp_path)]) == 130
+    kept = f"tendonlab: interrupted; 2 of 4 rigs stored in {tmp_path}; the same command does the rest\n"
+    printed = capsys.readouterr()
+    assert printed.err == kept
+    assert "2 simulated rigs were diagnosed; 2 were left out because the rehearsal was interrupted" in printed.out
+    assert main(["rehearse", str(pendulum), *FEW, "--out", str(tmp_path)]) == 0
+
+
 def test_without_a_plan_logs_are_needed(planned: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["rehearse", str(planned), *FEW]) == 2
     assert "key experiments: is missing" in capsys.readouterr().err

@@ -10,7 +10,7 @@ import numpy as np
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
-from tendonlab.report.numbers import number, unit_text
+from tendonlab.report.numbers import counted, number, unit_text
 from tendonlab.simulation.reading import rounding_step, white_noise_sd
 
 GAP = 1.5  # median steps between two stamps that make a gap
@@ -54,7 +54,7 @@ def _scatter(steps: np.ndarray) -> float:
 
 def _stamps(experiment: Experiment) -> Iterator[Finding]:
     if experiment.num_repeated:
-        text = f"{_counted(experiment.num_repeated, 'sample')} left out, whose time stamp repeats the one before"
+        text = f"{counted(experiment.num_repeated, 'sample')} left out, whose time stamp repeats the one before"
         yield _note("sampling", text, experiment, count=experiment.num_repeated)
     steps = np.diff(experiment.time)
     if len(steps) < LEAST_STEPS:
@@ -63,7 +63,7 @@ def _stamps(experiment: Experiment) -> Iterator[Finding]:
     gaps = steps[steps > GAP * usual]
     if len(gaps):
         lost = int(np.sum(np.round(gaps / usual) - 1))
-        text = f"{_counted(len(gaps), 'gap')} in time, about {_counted(lost, 'sample')} lost"
+        text = f"{counted(len(gaps), 'gap')} in time, about {counted(lost, 'sample')} lost"
         longest = f"the longest lasts {number(float(gaps.max()))} s at a usual step of {number(usual)} s"
         yield _note("sampling", f"{text}; {longest}", experiment, count=lost)
     quarter = len(steps) // 4
@@ -79,7 +79,7 @@ def _spikes(dataset: Dataset, experiment: Experiment, marked: Marks) -> Iterator
             continue
         count = int(marked[experiment.name, name].sum())
         if count:
-            share = f"{_counted(count, 'sample')} of {name} ({number(100 * count / len(experiment.data), 2)} %)"
+            share = f"{counted(count, 'sample')} of {name} ({number(100 * count / len(experiment.data), 2)} %)"
             done = "interpolated values" if dataset.signals[name].role == "input" else "these left out"
             text = f"{share} far from the samples around; a diagnosis goes on with {done}"
             yield _note("outliers", text, experiment, name, count)
@@ -164,10 +164,6 @@ def _note(
     problem: str, text: str, experiment: Experiment, signal: str | None = None, count: int | None = None
 ) -> Finding:
     return Finding(problem=problem, signal=signal, experiment=experiment.name, detail=text, count=count)
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _longest(marks: np.ndarray) -> int:

@@ -41,8 +41,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 0
     except OSError as error:
         return _complain(str(error))
-    except KeyboardInterrupt:
-        return _complain("interrupted", code=130)
+    except KeyboardInterrupt as ended:
+        return _complain("; ".join(["interrupted", *map(str, ended.args)]), code=130)
 
 
 def _complain(text: str, *, code: int = 2) -> int:
@@ -261,18 +261,21 @@ def _simulate(given: Arguments) -> int:
 
 
 def _sweep(given: Arguments) -> int:
-    from tendonlab.cli.sweep import grid_from, sweep_text, table_from
+    from tendonlab.cli.sweep import grid_from, kept_text, sweep_text, table_from
     from tendonlab.data import load
     from tendonlab.sweeping.sweep import sweep
 
     rig = load(_folder(given.dataset))
     experiment = _experiment(rig, given.experiment)
     points = table_from(given.points) if given.grid is None else grid_from(given.grid)
-    kept = {"reduce": given.reduce, "out": given.out, "progress": not given.quiet}
-    swept = sweep(rig.system(), points, experiment=experiment, **kept)
+    settings = {"reduce": given.reduce, "out": given.out, "progress": not given.quiet}
+    swept = sweep(rig.system(), points, experiment=experiment, **settings)
     print(f"{rig.name}, {experiment.name} ({experiment.split})\n\n{sweep_text(swept)}")
     if given.out is not None:
         print(f"\nWritten: {given.out}")
+    kept = kept_text(swept, given.out)
+    if kept:
+        raise KeyboardInterrupt(kept)
     return 0
 
 

@@ -48,7 +48,19 @@ def _rehearse(given: argparse.Namespace) -> int:
     print(rehearsal_text(found))
     written = "none written; --out DIR writes one" if given.out is None else found.report(given.out)
     print(f"\n{found.seconds:.0f} s, seed {found.seed}. Page: {written}")
+    if found.interrupted:
+        raise KeyboardInterrupt(_kept_text(found, given.out))
     return 0
+
+
+def _kept_text(found: Rehearsal, out: Path | None) -> str:
+    """What is left of a rehearsal that was interrupted, and how to go on."""
+    from tendonlab.report.numbers import counted
+
+    rigs = f"{len(found.cases)} of {counted(len(found.cases) + found.num_left_out, 'rig')}"
+    if out is None:
+        return f"{rigs} diagnosed, none stored: --out DIR stores them"
+    return f"{rigs} stored in {out}; the same command does the rest"
 
 
 def rehearsal_text(found: Rehearsal) -> str:

@@ -10,6 +10,8 @@ import numpy as np
 
 from tendonlab.cli.text import table
 from tendonlab.errors import DatasetError, ParameterError
+from tendonlab.report.numbers import counted
+from tendonlab.sweeping.storage import INTERRUPTED
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,10 +57,23 @@ def table_from(file: Path) -> pd.DataFrame:
 def sweep_text(swept: xr.Dataset) -> str:
     """How many runs went well, why others failed, and the range of each variable."""
     messages = swept["message"].to_numpy().ravel()
-    failed = sorted({str(m) for m in messages if m})
-    lines = [f"{messages.size} runs, {int((messages != '').sum())} failed", *(f"  {text}" for text in failed[:5])]
+    failed = [str(m) for m in messages if m not in ("", INTERRUPTED)]
+    num_left = int((messages == INTERRUPTED).sum())
+    head = f"{counted(messages.size, 'run')}, {len(failed)} failed{f', {num_left} interrupted' if num_left else ''}"
+    lines = [head, *(f"  {text}" for text in sorted(set(failed))[:5])]
     rows = [["", "smallest", "largest", "unit"]]
     for name, values in swept.data_vars.items():
         ends = (f"{float(values.min()):.6g}", f"{float(values.max()):.6g}")
         rows.append([str(name), *ends, str(values.attrs.get("unit", ""))])
     return "\n".join([*lines, "", table(rows, right=(1, 2))])
+
+
+def kept_text(swept: xr.Dataset, out: str | None) -> str:
+    """What is left of a sweep that was interrupted, and how to go on; "" after a whole one."""
+    messages = swept["message"].to_numpy()
+    num_done = int((messages != INTERRUPTED).sum())
+    if num_done == messages.size:
+        return ""
+    if out is None:
+        return f"{num_done} of {counted(messages.size, 'run')} done, none stored: --out FOLDER stores them"
+    return f"{num_done} of {counted(messages.size, 'run')} stored in {out}; the same command does the rest"

@@ -27,6 +27,11 @@ def number(value: float | None, digits: int = 3) -> str:
     return "0" if float(value) == 0.0 else text.replace("-", "−")
 
 
+def counted(count: int, noun: str) -> str:
+    """"1 run", "2 runs"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def span(bounds: Sequence[float] | None, digits: int = 3) -> str:
     """Two bounds as "0.04 to 0.06"; empty where they are absent. Different bounds differ in print, by more digits."""
     if bounds is None:
