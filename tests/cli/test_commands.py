@@ -130,6 +130,8 @@ def test_sweep_takes_a_grid_or_a_table(capsys: Printed, tiny: Path, tmp_path: Pa
     assert main(["sweep", str(tiny), *table]) == 0
     assert "2 runs, 0 failed" in capsys.readouterr().out
     assert (tmp_path / "runs.zarr" / "joint_angle").is_dir()
+    assert main(["sweep", str(tiny), "--grid", "inertia=0.4", "--reduce", "rms", "--quiet"]) == 0
+    assert "1 run, 0 failed" in capsys.readouterr().out
     assert main(["sweep", str(tiny), "--grid", "inertia=much"]) == 2
     assert "--grid inertia=much: expected NAME=VALUE,VALUE,..." in capsys.readouterr().err
 

@@ -294,6 +294,7 @@ def test_what_is_not_informed_is_told_wherever_results_are_shown() -> None:
     assert found.to_dict()["parameters"]["gravity_torque"]["informed"] is False
     assert found.to_dict()["parameters"]["inertia"]["informed"] is True
     assert "held: a small change has no effect" in identification_text(found)
+    assert "Converged after 1 iteration;" in identification_text(replace(found, num_iterations=1))
 
 
 def test_a_nominal_value_at_its_bound_that_nothing_informs_is_not_at_its_bound() -> None:

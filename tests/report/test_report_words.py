@@ -90,6 +90,10 @@ def test_numbers(value: float | None, expected: str) -> None:
     assert numbers.number(value) == expected
 
 
+def test_one_of_a_kind_is_singular() -> None:
+    assert [numbers.counted(num, "run") for num in (0, 1, 2)] == ["0 runs", "1 run", "2 runs"]
+
+
 def test_shares_and_probabilities() -> None:
     assert numbers.percent(0.91, [0.88, 0.94]) == "91 % (88–94 %)"
     assert numbers.percent(0.6, [-0.05, 0.7]) == "60 % (−5 to 70 %)"

@@ -343,10 +343,11 @@ def _systems(given: Arguments) -> int:
 def _list_datasets(given: Arguments) -> int:
     from tendonlab.cli.text import wrapped
     from tendonlab.data.datasets import list_datasets
+    from tendonlab.report.numbers import counted
 
     for name, of in list_datasets().items():
         megabytes = sum(file.size for file in of.files) / 1e6
-        print(f"{name}  ({len(of.files)} files, {megabytes:.1f} MB)")
+        print(f"{name}  ({counted(len(of.files), 'file')}, {megabytes:.1f} MB)")
         for line in (of.summary, f"Licence: {of.licence}", f"Cite: {of.citation}"):
             print(wrapped(line, indent="    "))
     return 0

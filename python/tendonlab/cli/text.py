@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tendonlab.diagnosis.confusions import confusions
-from tendonlab.report.numbers import estimate, number, prefixed, unit_text
+from tendonlab.report.numbers import counted, estimate, number, prefixed, unit_text
 from tendonlab.report.words import listing
 from tendonlab.simulation.catalog import parameter_unit, unit
 from tendonlab.simulation.prepare import choose_loop
@@ -98,7 +98,8 @@ def identification_text(fit: Identification) -> str:
         rows.append([str(name), number(nominal), *estimate(value, [lower, upper]), unit, doubt])
     num = len(fit.residuals)
     fitted = f"{num} experiments fitted together" if num > 1 else "1 experiment fitted"
-    state = f"Converged after {fit.num_iterations} iterations" if fit.converged else f"Not converged: {fit.message}"
+    work = counted(fit.num_iterations, "iteration")
+    state = f"Converged after {work}" if fit.converged else f"Not converged: {fit.message}"
     summary = f"{state}; {fitted}."
     tied = bullets("Hard to tell apart", _correlated(fit))
     parts = [wrapped(summary), table(rows, right=(1, 2)), _fit_errors(fit), tied, bullets("Notes", fit.warnings)]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from tendonlab.rehearsal.tally import EffectRehearsal, Share
-from tendonlab.report.numbers import number, percent_span, prefixed, probability, span
+from tendonlab.report.numbers import counted, number, percent_span, prefixed, probability, span
 from tendonlab.report.words import capital, listing, parameter_words, phrase
 
 if TYPE_CHECKING:
@@ -114,10 +114,10 @@ def reliability_words(of: Rehearsal) -> str:
 
 def amount_of_work(of: Rehearsal) -> str:
     """How many rigs were diagnosed, and what there was no time for."""
-    text = f"{len(of.cases)} simulated rigs were diagnosed"
+    text = f"{counted(len(of.cases), 'simulated rig')} {'was' if len(of.cases) == 1 else 'were'} diagnosed"
     if of.num_left_out:
-        why = "the rehearsal was interrupted" if of.interrupted else "there was no time for them"
-        text += f"; {of.num_left_out} were left out because {why}. The same call with an output folder goes on"
+        why = "the rehearsal was interrupted" if of.interrupted else "there was no time"
+        text += f"; {of.num_left_out} {'was' if of.num_left_out == 1 else 'were'} left out because {why}. The same call with an output folder goes on"
     return f"{text}."
 
 

@@ -10,12 +10,14 @@ import numpy as np
 
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.report.numbers import number
 
 LEAST = 0.05  # of the step of the logs
 LEAST_BY_SAMPLES = (
     0.75  # the same where a system answers sample by sample: half a sample, and what else stamps leave open
 )
-TOO_SHORT = "its delay of {:.2g} ms is shorter than {:.2g} ms, finer than logs with steps of {:.2g} ms tell time"
+NEXT_TO_NOTHING = 0.01  # of the least delay: a shorter one has no digits worth printing
+TOO_SHORT = "its delay of {} ms is shorter than {} ms, finer than logs with steps of {} ms tell time"
 
 
 def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
@@ -28,4 +30,12 @@ def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
     step = float(np.median([np.median(np.diff(e.time)) for e in case.experiments]))
     least = (LEAST if info.dof else LEAST_BY_SAMPLES) * step
     delay = fitted.system.parameters[law.parameters[0]]
-    return TOO_SHORT.format(*(1e3 * t for t in (delay, least, step))) if delay < least else ""
+    if delay >= least:
+        return ""
+    shortest = NEXT_TO_NOTHING * least
+    told = _ms(delay) if delay >= shortest else f"less than {_ms(shortest)}"
+    return TOO_SHORT.format(told, _ms(least), _ms(step))
+
+
+def _ms(seconds: float) -> str:
+    return number(1e3 * seconds, 2)
