@@ -153,3 +153,11 @@ def test_tables_are_by_verdict_strength_and_effect(scored: Score) -> None:
     assert scored.effects["cases"].to_dict() == {"joint:stribeck": 2, "load:offset": 1}
     assert "by gap/noise" in str(scored)
     assert len(json.loads(json.dumps(scored.to_dict()["cases"]))) == 6
+
+
+def test_a_share_of_no_cases_is_printed_as_a_dash(scored: Score) -> None:
+    """No truth is an unknown effect, and only cases with repeats are false alarms."""
+    lines = str(scored).splitlines()
+    assert "unknown recall               – (n = 0)" in lines
+    assert any(line.startswith("false alarms on no_gap") and line.endswith(" –") for line in lines)
+    assert "nan" not in str(scored).lower()

@@ -20,6 +20,7 @@ PAIRS = ("pair_both", "pair_one", "pair_wrong")
 FAULTS = ("fault_kind", "fault_signal")
 OF_TRUTH = ("true_probability", "covered", "ranked_share")
 HITS = ("top1", "told_apart", "established", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
+NONE = "– (n = 0)"  # a share of cases of which there are none
 LARGEST_GROUP = 3  # effects that a report cannot tell apart, of which the true one counts as one of so many
 
 
@@ -41,7 +42,8 @@ class Score:
     causes: pd.DataFrame
 
     def __str__(self) -> str:
-        lines = [f"{name:<28s} {value:.3g}" for name, value in self.summary.items()]
+        shown = {name: NONE if np.isnan(value) else f"{value:.3g}" for name, value in self.summary.items()}
+        lines = [f"{name:<28s} {text}" for name, text in shown.items()]
         tables = [
             ("by part of the cases", self.parts),
             ("verdict (truth in rows)", self.verdicts),
@@ -50,7 +52,7 @@ class Score:
             ("by unknown cause", self.causes),
         ]
         tables = [(title, table) for title, table in tables if len(table)]
-        blocks = [f"{title}\n{table.to_string(float_format='%.2f')}" for title, table in tables]
+        blocks = [f"{title}\n{table.to_string(float_format='%.2f', na_rep='–')}" for title, table in tables]
         return "\n\n".join(["\n".join(lines), *blocks])
 
     def to_dict(self) -> dict[str, object]:
