@@ -136,6 +136,8 @@ BROKEN: list[tuple[str, Mutation, str]] = [
     ("time column missing", put("time.column", "time"), r"one.csv, column 'time': is missing"),
     ("time in metres", put("time.unit", "m"), r"time.unit: unit 'm' is of the wrong dimension.*'s'"),
     ("no unit at all", put("signals.joint_angle.unit", "radd"), r"signals.joint_angle.unit: unit 'radd'"),
+    ("a unit cut off", put("signals.joint_angle.unit", "N*"), r"unit 'N\*' is not a unit; expected one like 'N\*m'"),
+    ("an open bracket", put("signals.joint_angle.unit", "rad/(s"), r"unit 'rad/\(s' is not a unit; expected one like"),
     ("unit no text", put("signals.joint_angle.unit", 1), r"signals.joint_angle.unit: 1: expected a string"),
     ("angle in metres", put("signals.joint_angle.unit", "m"), r"joint_angle.unit: unit 'm'.*wrong dimension.*'rad'"),
     ("angle in counts", put("signals.joint_angle.unit", "count"), r"joint_angle.unit: unit 'count'.*'rad'"),

@@ -31,7 +31,9 @@ def parse(unit: str) -> pint.Unit:
     try:
         return _registry().Unit("dimensionless" if unit.strip() in ("1", "") else unit)
     except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, tokenize.TokenError) as error:
-        raise DatasetError(f"unit {unit!r} is not a unit ({error}); expected one like 'N*m', 'rad/s', '1'") from error
+        # Of a product that breaks off, pint's parser says nothing that a reader could use.
+        reason = "" if isinstance(error, AssertionError | tokenize.TokenError) else f" ({error})"
+        raise DatasetError(f"unit {unit!r} is not a unit{reason}; expected one like 'N*m', 'rad/s', '1'") from error
 
 
 def same_dimension(unit: str, other: str) -> bool:
