@@ -9,7 +9,7 @@ import pytest
 
 from tendonlab import procedures
 from tendonlab.arguments import reals, samples, within
-from tendonlab.errors import ParameterError
+from tendonlab.errors import ParameterError, nearest_name
 from tendonlab.seed import generator
 
 TIME = np.arange(0.0, 1.0, 0.01)
@@ -43,6 +43,11 @@ def test_a_number_may_be_of_any_kind(value: Any) -> None:
 def test_a_row_of_samples_is_told_what_it_is_not(values: Any, told: str) -> None:
     with pytest.raises(ParameterError, match=re.escape(told)):
         samples("load", values)
+
+
+@pytest.mark.parametrize(("name", "nearest"), [("run-1", "run-01"), ("run1", "run-01"), ("run-010", "run-10")])
+def test_the_nearest_name_has_the_same_number(name: str, nearest: str) -> None:
+    assert nearest_name(name, [f"run-{k:02d}" for k in range(1, 13)]) == nearest
 
 
 def test_a_mask_that_hides_nothing_is_no_matter() -> None:

@@ -1,6 +1,7 @@
 """The three errors of the library: each message carries the name, the offending value and what was expected."""
 
 import difflib
+import re
 from collections.abc import Iterable
 
 
@@ -18,8 +19,14 @@ class NumericalError(ArithmeticError):
 
 def nearest_name(name: str, known: Iterable[str], *, likeness: float = 0.6) -> str | None:
     """The known name most like `name`, or None where none reaches `likeness`, from 0 to 1 (the same)."""
-    matches = difflib.get_close_matches(str(name), list(known), n=1, cutoff=likeness)
-    return matches[0] if matches else None
+    # As text, "run-1" is as near to "run-10" as to "run-01".
+    plain = {_without_leading_zeros(each): each for each in known}
+    matches = difflib.get_close_matches(_without_leading_zeros(str(name)), plain, n=1, cutoff=likeness)
+    return plain[matches[0]] if matches else None
+
+
+def _without_leading_zeros(name: str) -> str:
+    return re.sub(r"(?<!\d)0+(?=\d)", "", name)
 
 
 def expected_one_of(name: str, known: Iterable[str]) -> str:
