@@ -119,6 +119,15 @@ def test_bad_arguments(pendulum: Path, options: dict[str, object], message: str)
         tl.rehearse(pendulum, progress=False, **options)  # type: ignore[arg-type]
 
 
+def test_effects_are_checked_before_anything_is_simulated(pendulum: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_early(*_: object) -> None:
+        raise AssertionError("a rig was simulated")
+
+    monkeypatch.setattr("tendonlab.rehearsal.rehearse.simulated_rig", too_early)
+    with pytest.raises(tl.ParameterError, match="did you mean 'load:offset'"):
+        tl.rehearse(pendulum, effects=["load:offse"], progress=False)
+
+
 @pytest.mark.slow
 def test_offsets_are_found_on_a_real_diagnosis(pendulum: Path, tmp_path: Path) -> None:
     """Two processes, the library's own diagnosis: an offset of eight noise floors is no secret."""

@@ -74,8 +74,9 @@ def rehearse(
     began, seed, jobs = time.monotonic(), checked(seed), whole("jobs", jobs, 1)
     gaps, repeats = _checked_sizes(sizes), whole("repeats_per_size", repeats_per_size, 1)
     seconds = 60.0 * positive("minutes", minutes, "min")
-    rigs = _rigs(rig, plan)
-    names = _checked_effects(rigs, effects)
+    dataset = _dataset(rig, plan)
+    names = _checked_effects(dataset, effects)
+    rigs = simulated_rig(dataset, None if plan is None else planned_experiments(Path(plan), dataset))
     judge = partial(library_diagnose, progress=False) if diagnose is None else diagnose
     store = Store(None if out is None else Path(out), settings_of(rigs, gaps, seed, diagnose))
     gauge = Gauge(rigs)
@@ -90,12 +91,12 @@ def rehearse(
     return _result(rigs, ladders, cases, rows, ended, seed=seed, sizes=gaps, seconds=time.monotonic() - began)
 
 
-def _rigs(rig: Dataset | Path_, plan: Path_ | None) -> SimulatedRig:
-    """The rigs to simulate: in the logs' experiments, or in planned ones."""
+def _dataset(rig: Dataset | Path_, plan: Path_ | None) -> Dataset:
+    """The dataset of the rig, which needs no logs where experiments are planned."""
     if isinstance(rig, str | PathLike):
         rig = load(rig) if plan is None else rig_without_logs(Path(rig))
     require_dataset(rig)
-    return simulated_rig(rig, None if plan is None else planned_experiments(Path(plan), rig))
+    return rig
 
 
 def _at_sizes(ladder: Ladder, gaps: Sequence[float]) -> dict[float, dict[str, float]]:
@@ -112,14 +113,15 @@ def _checked_sizes(sizes: Sequence[float]) -> tuple[float, ...]:
     return tuple(sorted(gaps))
 
 
-def _checked_effects(rigs: SimulatedRig, effects: Sequence[str] | None) -> list[str]:
-    known = withheld_effects(rigs.system, rigs.rig.outputs)
+def _checked_effects(rig: Dataset, effects: Sequence[str] | None) -> list[str]:
+    system = rig.system()
+    known = withheld_effects(system, rig.outputs)
     if effects is None:
         return known
     if isinstance(effects, str):
         raise ParameterError(f"effects = {effects!r}: expected a list such as ['joint:stribeck']")
     for name in effects:
-        rigs.system.info.effect(name)  # an unknown name says so
+        system.info.effect(name)  # an unknown name says so
         if name not in known:
             reason = "it is in the simulator, its sensor was not recorded, or it needs another effect"
             raise ParameterError(f"{name!r} cannot be withheld: {reason}; {expected_one_of(name, known)}")
