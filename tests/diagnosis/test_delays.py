@@ -31,7 +31,9 @@ def test_a_delay_counts_from_a_part_of_a_step_on(fitter: Fitter, steps: float, i
 def test_a_delay_that_vanishes_is_not_printed_as_0_ms(fitter: Fitter, steps: float) -> None:
     """The least delay of logs at 500 Hz is 0.1 ms, and a hundredth of it the shortest that is printed."""
     text = trouble_with_delays(fitter.case, delayed(fitter, steps), NAME)
-    assert text.startswith("its delay of less than 0.001 ms is shorter than 0.1 ms, finer than logs with steps of 2 ms ")
+    assert text.startswith(
+        "its delay of less than 0.001 ms is shorter than 0.1 ms, finer than logs with steps of 2 ms "
+    )
 
 
 def test_a_system_that_answers_by_samples_may_do_so_half_a_sample_late(fitter: Fitter) -> None:

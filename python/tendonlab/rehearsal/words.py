@@ -114,11 +114,16 @@ def reliability_words(of: Rehearsal) -> str:
 
 def amount_of_work(of: Rehearsal) -> str:
     """How many rigs were diagnosed, and what there was no time for."""
-    text = f"{counted(len(of.cases), 'simulated rig')} {'was' if len(of.cases) == 1 else 'were'} diagnosed"
-    if of.num_left_out:
+    done, left = counted(len(of.cases), "simulated rig"), of.num_left_out
+    text = f"{done} {_were(len(of.cases))} diagnosed"
+    if left:
         why = "the rehearsal was interrupted" if of.interrupted else "there was no time"
-        text += f"; {of.num_left_out} {'was' if of.num_left_out == 1 else 'were'} left out because {why}. The same call with an output folder goes on"
+        text += f"; {left} {_were(left)} left out because {why}. The same call with an output folder goes on"
     return f"{text}."
+
+
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
 
 
 def _share_words(of: Share) -> str:

@@ -28,7 +28,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """"1 run", "2 runs"."""
+    """ "1 run", "2 runs"."""
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
