@@ -55,9 +55,14 @@ def test_the_answers_are_printed_and_the_page_is_written(
 @pytest.mark.cpu(15)
 @pytest.mark.usefixtures("stubbed")
 def test_a_plan_needs_no_logs(planned: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (planned / "plan.toml").write_text(PLAN, encoding="utf-8")
+    still = (
+        '[[experiments]]\nname = "still"\nshape = "steps"\namplitude = 0.1\nhold = 9\nduration = 4\nsplit = "train"\n'
+    )
+    (planned / "plan.toml").write_text(PLAN + still, encoding="utf-8")
     assert main(["rehearse", str(planned), "--plan", str(planned / "plan.toml"), *FEW]) == 0
-    assert "the stated controller drives the rigs along the reference" in " ".join(capsys.readouterr().out.split())
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "the stated controller drives the rigs along the reference" in printed
+    assert "The planned experiment still never moves: reference_angle = 0 rad throughout." in printed
 
 
 @pytest.mark.cpu(15)

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
-from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs
+from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs, still_notes
 from tendonlab.rehearsal.sensors import stated_noise
 
 HEAD = 'format = "tendonlab-plan/1"\nrate = 100\n'
@@ -46,6 +46,15 @@ def test_a_file_is_read_in_the_columns_and_units_of_the_dataset(planned: Path) -
     (made,) = planned_experiments(plan(planned, text), rig_without_logs(planned))
     assert made.data["reference_angle"].to_numpy() == pytest.approx(np.deg2rad(30) * np.sin(time), abs=1e-9)
     assert made.add == {"gravity_torque": 0.1}
+
+
+def test_a_planned_experiment_that_never_moves_is_named(planned: Path) -> None:
+    """Steps begin at 0: the second record ends before its first step."""
+    steps = '[[experiments]]\nname = "{0}"\nshape = "steps"\namplitude = 0.2\noffset = 0.1\nduration = 4\nhold = {1}\n'
+    rig = rig_without_logs(planned)
+    made = planned_experiments(plan(planned, HEAD + CHIRP + steps.format("s", 5) + steps.format("t", 1)), rig)
+    told = ["The planned experiment s never moves: reference_angle = 0.1 rad throughout."]
+    assert list(still_notes(made, rig)) == told
 
 
 @pytest.mark.parametrize(

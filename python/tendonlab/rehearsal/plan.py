@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,8 @@ from tendonlab.data.split import choose_test
 from tendonlab.data.units import convert
 from tendonlab.errors import DatasetError, expected_one_of
 from tendonlab.rehearsal.shapes import SHAPES, planned_path
+from tendonlab.report.numbers import number, unit_text
+from tendonlab.report.words import listing
 
 FORMAT = "tendonlab-plan/1"
 TOP_KEYS = ("format", "rate", "experiments")
@@ -64,6 +67,16 @@ def planned_experiments(file: Path, rig: Dataset) -> tuple[Experiment, ...]:
     if all(float(np.ptp(e.data[driving].to_numpy(dtype=float))) == 0.0 for e in made if driving in e.data.columns):
         raise top.error("experiments", f"{driving} is constant in all of them; expected it to vary")
     return made
+
+
+def still_notes(planned: Sequence[Experiment], rig: Dataset) -> Iterator[str]:
+    """A note for each planned experiment whose inputs and references never change."""
+    driving = [name for name, spec in rig.signals.items() if spec.role in ("input", "reference", "disturbance")]
+    for experiment in planned:
+        given = {name: experiment.data[name] for name in driving if name in experiment.data.columns}
+        if all((values == values.iloc[0]).all() for values in given.values()):
+            held = [f"{n} = {number(v.iloc[0])} {unit_text(rig.signals[n].si_unit)}".rstrip() for n, v in given.items()]
+            yield f"The planned experiment {experiment.name} never moves: {listing(held)} throughout."
 
 
 def _read(file: Path) -> Table:

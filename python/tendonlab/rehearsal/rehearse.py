@@ -19,7 +19,7 @@ from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.progress import track
 from tendonlab.rehearsal.build import simulated_rig
 from tendonlab.rehearsal.cases import NOTHING, RehearsalCase, ordered_cases
-from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs
+from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs, still_notes
 from tendonlab.rehearsal.result import Rehearsal
 from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.run import Diagnose, Progress, Row, Work, run_cases
@@ -181,6 +181,7 @@ def _notes(rigs: SimulatedRig, cases: Sequence[RehearsalCase]) -> tuple[str, ...
     )
     clean = sum(case.effect == NOTHING for case in cases)
     return (
+        *(still_notes(rigs.rig.experiments, rigs.rig) if rigs.planned else ()),
         OWN_LAWS,
         f"{free} parameters of each rig were drawn from the beliefs, at most 2 sd from the nominal values.",
         f"Noise: {noise}, and {100 * rigs.noise.scatter:.1g} % scatter of each element's friction from run to run.",
