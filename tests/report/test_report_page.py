@@ -67,6 +67,14 @@ def test_page_is_well_formed_and_self_contained(diagnosis: Diagnosis, tmp_path: 
     assert set(re.findall(r"url\(#([^)]+)\)", text)) <= set(page.ids)
 
 
+def test_names_in_code_never_break(with_effect: Diagnosis, tmp_path: Path) -> None:
+    text, _ = read(with_effect, tmp_path)
+    (style,) = re.findall(r"^code {(.*)}$", text, re.MULTILINE)
+    assert "white-space: nowrap" in style
+    assert "overflow-wrap" not in style
+    assert f"<code>{with_effect.effects[0].name}</code>" in text
+
+
 def test_page_holds_the_sentence_and_the_four_answers(diagnosis: Diagnosis, tmp_path: Path) -> None:
     words = " ".join(read(diagnosis, tmp_path)[1].text)
     assert diagnosis.sentence in words
