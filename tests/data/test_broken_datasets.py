@@ -207,6 +207,11 @@ BROKEN: list[tuple[str, Mutation, str]] = [
     ("all-NaN output", samples("q", slice(None), np.nan), r"one.csv, column 'q': every sample is missing"),
     ("all-NaN input", samples("u", slice(None), np.nan), r"one.csv, column 'u': every sample is missing"),
     ("long gap in an input", samples("u", slice(4, 9), np.nan), r"row 6, column 'u': 6 samples .*at most 5"),
+    (
+        "gap below an empty row",
+        all_of(*(samples(name, 2, np.nan) for name in ("u", "q", "dq")), samples("u", slice(4, 9), np.nan)),
+        r"row 6, column 'u': 6 samples",
+    ),
     ("gap at the start", samples("u", 0, np.nan), r"row 2, column 'u': motor_torque is missing at the start"),
     ("gap at the end", samples("u", 19, np.nan), r"row 21, column 'u': motor_torque is missing at the end"),
     (

@@ -162,6 +162,9 @@ def _read_frame(file: str, context: Context) -> pd.DataFrame:
             raise
         columns = read_columns(context.folder / file, signals)  # steady points: a row has a number, no instant
         time = np.arange(len(columns.values[signals[0]]), dtype=float)
+    empty = np.all([np.isnan(columns.values[name]) for name in signals], axis=0)
+    if not empty.all():  # a row that holds nothing is as good as none
+        columns, time = columns.only(~empty), time[~empty]
     samples = {name: _read_samples(columns, spec, time) for name, spec in context.signals.items()}
     return pd.DataFrame(samples, index=pd.Index(time, name="t"))
 

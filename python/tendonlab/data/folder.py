@@ -5,9 +5,11 @@ from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
+import numpy as np
+
 from tendonlab.data.controller import check_controller, read_controller
 from tendonlab.data.dataset import Dataset
-from tendonlab.data.experiments import Context, read_experiments, read_time, split_is_given
+from tendonlab.data.experiments import MAX_MISSING, Context, read_experiments, read_time, split_is_given
 from tendonlab.data.missing_inputs import absent_inputs
 from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
 from tendonlab.data.schema import FILE, read_toml
@@ -15,6 +17,8 @@ from tendonlab.data.signals import read_signals
 from tendonlab.errors import DatasetError, ParameterError, nearest_name
 from tendonlab.simulation import catalog
 from tendonlab.simulation.records import Controller, Experiment, SignalSpec
+
+MOST_LONG = 0.01  # share of long time steps up to which they are gaps
 
 
 def load(path: str | PathLike[str]) -> Dataset:
@@ -54,6 +58,7 @@ def load(path: str | PathLike[str]) -> Dataset:
         *assumptions(top, parameters, experiments, info, command_is_effort=command_is_effort),
         *_doubts(experiments, signals.values(), info=info),
         *_split_notes(experiments, given=split_is_given(top)),
+        *(() if info.steady else _gap_notes(experiments)),
     ]
     dataset = Dataset(
         name=name,
@@ -130,3 +135,19 @@ def _split_notes(experiments: tuple[Experiment, ...], *, given: bool) -> list[st
     if given:
         return []
     return [f"no split given: held out by the library: {', '.join(held_out)}"]
+
+
+def _gap_notes(experiments: Iterable[Experiment]) -> list[str]:
+    """A warning for every experiment that lost more samples in a row than inputs may lack. Where many steps are long,
+    the log was meant to be uneven."""
+    notes = []
+    for experiment in experiments:
+        time, steps = experiment.time, np.diff(experiment.time)
+        lost = np.round(steps / np.median(steps)) - 1
+        long = lost > MAX_MISSING
+        if 0 < long.sum() <= max(1.0, MOST_LONG * len(steps)):
+            worst = int(lost.argmax())
+            where = f"about {lost[worst]:.0f} samples are missing in a row after t = {time[worst]:.6g} s"
+            advice = "inputs are held or interpolated there; end the experiment before the gap unless that is right"
+            notes.append(f"{experiment.name}: {where}; {advice}")
+    return notes

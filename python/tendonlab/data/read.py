@@ -30,17 +30,21 @@ class MissingColumnError(DatasetError):
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of one file, float, each of shape (n,). `first_row` is how the first sample is counted in messages:
-    line 2 of a CSV, below its header, and 1 in files that have no lines."""
+    """The columns of one file, float, each of shape (n,). `rows` are the numbers of the samples in messages: from line
+    2 of a CSV on, below its header, and from 1 in files that have no lines."""
 
     file: str
     values: dict[str, np.ndarray]
-    first_row: int
+    rows: np.ndarray
 
     def error(self, column: str, problem: str, *, sample: int | None = None) -> DatasetError:
         """The error to raise about `column`, at `sample` (from 0) if it is there."""
-        row = "" if sample is None else f", row {sample + self.first_row}"
+        row = "" if sample is None else f", row {self.rows[sample]}"
         return DatasetError(f"{self.file}{row}, column {column!r}: {problem}")
+
+    def only(self, kept: np.ndarray) -> Columns:
+        """The samples that are `kept`, a mask of shape (n,); messages name the rows of the file as before."""
+        return Columns(self.file, {name: values[kept] for name, values in self.values.items()}, self.rows[kept])
 
 
 def read_columns(path: Path, columns: Sequence[str]) -> Columns:
@@ -51,8 +55,9 @@ def read_columns(path: Path, columns: Sequence[str]) -> Columns:
         raise DatasetError(f"{path.name}: unknown kind of file {path.suffix!r}; expected {', '.join(_READERS)}")
     if not path.is_file():
         raise DatasetError(f"{path}: no such file")
-    found = Columns(path.name, reader(path, columns), first_row=2 if reader is _read_csv else 1)
-    first = next(iter(found.values))
+    read = reader(path, columns)
+    first = next(iter(read))
+    found = Columns(path.name, read, np.arange(len(read[first])) + (2 if reader is _read_csv else 1))
     for name, values in found.values.items():
         if len(values) != len(found.values[first]):
             raise found.error(name, f"{len(values)} samples; expected {len(found.values[first])} as in {first!r}")
