@@ -155,40 +155,6 @@ def test_a_regulated_rig_may_be_excited_by_its_disturbance(draft, write):
     assert load(write(draft)).controller.reference == "target"
 
 
-def test_missing_outputs_stay_and_short_gaps_of_inputs_are_interpolated(draft, write):
-    """u is a ramp with slope 10 in time, so its missing samples are known; equal steps are not required."""
-    frame = draft.frames["one.csv"]
-    frame["t"] = np.cumsum(np.linspace(0.01, 0.02, 20))
-    frame["u"] = ramp = 10 * frame["t"]
-    frame["u"] = ramp.where(~frame.index.isin([3, 4, 5, 6, 7, 12]))
-    frame.loc[[0, 5, 19], "q"] = np.nan
-    data = load(write(draft))["one"].data
-    np.testing.assert_allclose(data["motor_torque"], ramp, rtol=1e-12)
-    assert list(np.flatnonzero(data["joint_angle"].isna())) == [0, 5, 19]
-
-
-@pytest.mark.parametrize("place", [0, 5, 12])
-def test_rows_that_hold_nothing_are_as_good_as_missing_ones(draft, write, place):
-    """Eight samples lost, which is more than an input may lack: at the start, in the middle, at the end."""
-    lost, frame = range(place, place + 8), draft.frames["one.csv"]
-    draft.frames["one.csv"] = frame.drop(index=lost)
-    absent = load(write(draft))
-    draft.frames["one.csv"] = frame.copy()
-    draft.frames["one.csv"].loc[list(lost), frame.columns.drop("t")] = np.nan
-    empty = load(write(draft))
-    pd.testing.assert_frame_equal(empty["one"].data, absent["one"].data)
-    assert empty.warnings == absent.warnings
-    assert [w.split(";")[0] for w in absent.warnings] == (
-        ["one: about 8 samples are missing in a row after t = 0.04 s"] if place == 5 else []
-    )
-
-
-def test_a_log_that_was_meant_to_be_uneven_has_no_gaps(draft, write):
-    frame = draft.frames["one.csv"]
-    frame["t"] = np.cumsum(np.where(frame.index % 6 == 5, 0.2, 0.01))
-    assert load(write(draft)).warnings == ()
-
-
 def test_values_known_in_one_experiment(draft, write):
     draft.toml["experiments"][0] |= {
         "repeat": "A",
