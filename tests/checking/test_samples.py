@@ -139,6 +139,36 @@ def test_a_coarse_reading_is_noted_with_its_step(step: float, noted: bool, tmp_p
         assert "in steps of 0.01 rad" in notes[0].detail
 
 
+@pytest.mark.parametrize("num", [2, 20])
+def test_an_output_that_is_read_at_a_lower_rate_and_held_is_noted(num: int, tmp_path: Path) -> None:
+    held, lost = np.repeat(ANGLE[::num], num), np.delete(np.arange(1000), [77, 300, 301])
+    runs = [(TIME, held, CURRENT), (TIME[lost], held[lost], CURRENT[lost])]
+    (note,) = [f for f in found(tmp_path, *runs) if f.signal == "joint_angle"]
+    assert (note.problem, note.experiment, note.blocks) == ("sampling", None, False)
+    assert f"joint_angle changes only every {num} samples, as a sensor that is read at a lower rate" in note.detail
+
+
+def test_a_run_whose_output_alone_is_held_is_named(tmp_path: Path) -> None:
+    notes = found(tmp_path, (TIME, ANGLE, CURRENT), (TIME, np.repeat(ANGLE[::5], 5), CURRENT))
+    assert [(f.problem, f.experiment) for f in notes] == [("sampling", "run_2")]
+
+
+@pytest.mark.parametrize(
+    "angle",
+    [
+        0.01 * np.round(100 * np.sin(0.3 * TIME)),  # a coarse encoder in slow motion
+        0.01 * np.floor(0.05 * np.arange(1000) + 0.5),  # one that turns by a step in exactly 20 samples
+        0.01 * np.abs(np.floor(0.05 * np.arange(-500, 500) + 0.5)),  # the same, with a reversal
+        0.01 * np.round(100 * np.sin(0.3 * TIME) + 0.3 * RNG.standard_normal(1000)),  # one with noise
+        np.where(np.arange(1000) % 20 == 0, ANGLE, np.nan),  # what is read at a lower rate and not held
+        np.where(np.arange(1000) % 400 < 200, ANGLE, 0.3),  # a motion with rests
+    ],
+)
+def test_a_reading_that_repeats_without_being_held_is_not_called_held(angle: np.ndarray, tmp_path: Path) -> None:
+    notes = found(tmp_path, (TIME, angle, CURRENT))
+    assert [f.detail for f in notes if "every" in f.detail] == []
+
+
 def test_a_stated_resolution_needs_no_note(tmp_path: Path) -> None:
     rig = Logs({"a": (TIME, 0.01 * np.floor(np.sin(0.5 * TIME) / 0.01), CURRENT)}).write(tmp_path)
     spec = replace(rig.signals["joint_angle"], resolution=0.01)

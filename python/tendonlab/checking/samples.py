@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.checking.finding import Finding
+from tendonlab.checking.held import held_findings
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.report.numbers import counted, number, unit_text
@@ -32,7 +33,7 @@ def sample_findings(dataset: Dataset, marked: Marks | None = None) -> list[Findi
         found += [] if steady else [*_stamps(experiment), *_spikes(dataset, experiment, marked)]
         found += _standing(dataset, experiment)
         found += [] if steady else _limits(dataset, experiment)
-    return [*found, *([] if steady else [*_jitter(dataset), *_steps(dataset)])]
+    return [*found, *([] if steady else [*_jitter(dataset), *_steps(dataset), *held_findings(dataset)])]
 
 
 def _jitter(dataset: Dataset) -> Iterator[Finding]:
