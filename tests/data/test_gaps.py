@@ -31,11 +31,19 @@ def test_rows_that_hold_nothing_are_as_good_as_missing_ones(draft, write, place)
     pd.testing.assert_frame_equal(empty["one"].data, absent["one"].data)
     assert empty.warnings == absent.warnings
     assert [w.split(";")[0] for w in absent.warnings] == (
-        ["one: about 8 samples are missing in a row after t = 0.04 s"] if place == 5 else []
+        ["samples are missing in a row, about 8 after t = 0.04 s in one"] if place == 5 else []
     )
 
 
+def test_gaps_of_several_experiments_are_one_warning(draft, write):
+    for name, frame in draft.frames.items():
+        draft.frames[name] = frame.drop(index=range(5, 13))
+    (warning,) = load(write(draft)).warnings
+    assert "about 8 after t = 0.04 s in one (such gaps in 2 experiments); inputs are held or" in warning
+
+
 def test_a_log_that_was_meant_to_be_uneven_has_no_gaps(draft, write):
+    """Stamps that are lost at random: the longest step is ten times the usual one."""
     frame = draft.frames["one.csv"]
-    frame["t"] = np.cumsum(np.where(frame.index % 6 == 5, 0.2, 0.01))
+    frame["t"] = np.cumsum(np.where(frame.index % 3 == 2, 0.03, 0.01)) + 0.1 * (frame.index > 10)
     assert load(write(draft)).warnings == ()

@@ -18,7 +18,7 @@ from tendonlab.errors import DatasetError, ParameterError, nearest_name
 from tendonlab.simulation import catalog
 from tendonlab.simulation.records import Controller, Experiment, SignalSpec
 
-MOST_LONG = 0.01  # share of long time steps up to which they are gaps
+MOST_LONG = 0.05  # share of long time steps up to which they are gaps
 
 
 def load(path: str | PathLike[str]) -> Dataset:
@@ -138,16 +138,17 @@ def _split_notes(experiments: tuple[Experiment, ...], *, given: bool) -> list[st
 
 
 def _gap_notes(experiments: Iterable[Experiment]) -> list[str]:
-    """A warning for every experiment that lost more samples in a row than inputs may lack. Where many steps are long,
-    the log was meant to be uneven."""
-    notes = []
+    """A warning where experiments lost more samples in a row than inputs may lack. Where many steps are long, the log
+    was meant to be uneven."""
+    found = []
     for experiment in experiments:
         time, steps = experiment.time, np.diff(experiment.time)
         lost = np.round(steps / np.median(steps)) - 1
-        long = lost > MAX_MISSING
-        if 0 < long.sum() <= max(1.0, MOST_LONG * len(steps)):
-            worst = int(lost.argmax())
-            where = f"about {lost[worst]:.0f} samples are missing in a row after t = {time[worst]:.6g} s"
-            advice = "inputs are held or interpolated there; end the experiment before the gap unless that is right"
-            notes.append(f"{experiment.name}: {where}; {advice}")
-    return notes
+        worst = int(lost.argmax())
+        if lost[worst] > MAX_MISSING and np.sum(lost > 0) <= max(1.0, MOST_LONG * len(steps)):
+            found.append(f"about {lost[worst]:.0f} after t = {time[worst]:.6g} s in {experiment.name}")
+    if not found:
+        return []
+    others = f" (such gaps in {len(found)} experiments)" if len(found) > 1 else ""
+    advice = "inputs are held or interpolated there; end the experiment before the gap unless that is right"
+    return [f"samples are missing in a row, {found[0]}{others}; {advice}"]
