@@ -12,7 +12,7 @@ from checking.pendulum import CONSTANT, COULOMB, GRAVITY, INERTIA, MOTIONS, VISC
 from tendonlab.checking.check import check
 from tendonlab.checking.clocks import SCANNED
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.lags import _mended, _saved, _steps, _weights, lags
+from tendonlab.checking.lags import _by_prescribed, _mended, _saved, _steps, _weights, lags
 from tendonlab.checking.logs import read_logs
 from tendonlab.checking.regression import FREEDOM, Fit, Unknown
 from tendonlab.checking.terms import Terms
@@ -92,6 +92,21 @@ def test_friction_of_its_own_saves_what_it_explains() -> None:
     assert _saved(friction, columns) == pytest.approx(alone, rel=0.02)
     across = 3.0 * np.cos(np.linspace(0.0, 20.0, 400)) + noise
     assert _saved(across, columns) < 0.1 * np.sum(np.log1p(across**2))
+
+
+def test_dry_friction_along_a_prescribed_motion_saves_what_it_explains() -> None:
+    """Where the part began is free as well. A lag, which follows the velocity, is explained a little."""
+    rng = np.random.default_rng(0)
+    run = np.repeat([0, 1], 400)
+    velocity, noise = np.tile(np.sin(np.linspace(0.0, 20.0, 400)), 2), rng.standard_normal(800)
+    logs: Any = SimpleNamespace(run=run, driving={"actuator_velocity": np.stack([velocity] * 3)})
+    equation: Any = SimpleNamespace(prescribed=("actuator_velocity",))
+    share = np.array([0.5])
+    cold, late = 5.0 * np.sign(velocity) - 8.0 + noise, 5.0 * np.cos(np.linspace(0.0, 40.0, 800)) + noise
+    surprise = 0.5 * (np.sum(np.log1p(cold[:400] ** 2)) - np.sum(np.log1p(noise[:400] ** 2)))
+    assert _by_prescribed(equation, logs, cold[None], 0, share) == pytest.approx(surprise, rel=0.02)
+    assert _by_prescribed(equation, logs, late[None], 0, share) < 0.1 * surprise
+    assert _by_prescribed(SimpleNamespace(prescribed=()), logs, cold[None], 0, share) == 0.0  # type: ignore[arg-type]
 
 
 def test_a_cold_run_is_not_late(tmp_path: Path) -> None:

@@ -73,8 +73,8 @@ def _gain(
 ) -> np.ndarray:
     """Nats by which its own lags suit each experiment better than the common ones, at the parameters that suit each,
     beyond what the middle experiment gains: one late sensor spoils the parameters of all. Nothing where they mend no
-    equation, or where friction in presliding suits it as well. Where nothing moves by an equation, beyond what dry
-    friction of its own brings: friction that falls with speed is highest in a slow run."""
+    equation, or where friction suits it as well, in presliding or along a prescribed motion. Where nothing moves by an
+    equation, beyond what dry friction of its own brings: friction that falls with speed is highest in a slow run."""
     common = np.repeat(np.median(late, axis=1)[:, None], late.shape[1], axis=1)
     moved = logs.earlier(dict(zip(equation.measured, common, strict=True))).at(kept)
     at = terms(equation, moved)
@@ -87,7 +87,10 @@ def _gain(
     gained = np.where(_mended(fit, without, moved.run, late.shape[1]), np.maximum(gained - np.median(gained), 0.0), 0.0)
     left = without.residual / (without.level * at.size * FREEDOM**0.5)[:, None]
     if equation.axes:
-        bent = [_by_bristles(equation, moved, left, i, share) for i in range(len(gained))]
+        bent = [
+            _by_bristles(equation, moved, left, i, share) + _by_prescribed(equation, moved, left, i, share)
+            for i in range(len(gained))
+        ]
         return np.where(gained > 0.5 * (FREEDOM + 1) * np.array(bent), gained, 0.0)
     velocity = sliding(equation, moved, 0)
     if velocity is None:
@@ -212,6 +215,17 @@ def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: i
             columns = np.column_stack([_friction(speed), deflection])
             saved = max(saved, float(share[k]) * _saved(left[k, here], columns))
     return saved
+
+
+def _by_prescribed(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:
+    """By how much dry friction along a prescribed motion lowers the surprise of an experiment, of each equation by its
+    `share`: a cold run has more of it. Where the part began was not logged, so an offset is free."""
+    here = logs.run == experiment
+    if not equation.prescribed or not here.any():
+        return 0.0
+    velocity = logs.driving[equation.prescribed[0]][0, here]
+    columns = np.stack([np.ones_like(velocity), np.sign(velocity)], axis=1)
+    return float(share @ [_saved(row[here], columns) for row in left])
 
 
 def _friction(speed: np.ndarray) -> np.ndarray:

@@ -20,8 +20,8 @@ MOST_ORDERS = 5040  # of the runs that are tried: all of seven, some of more
 @dataclass(frozen=True)
 class Drift:
     """A trend of the friction of `element` over the session. `change`: of the friction of the last run over that of
-    the first, relative. `chance`: share of the orders of the runs in which a trend would fit as well, times the number
-    of elements that were looked at."""
+    the first, relative. `chance`: share of the orders of the runs in which a trend would fit the friction of some
+    element as well."""
 
     element: str
     change: float
@@ -40,28 +40,36 @@ def over_session(case: Case, model: Fitted) -> Drift | None:
     stated = [start for start in starts if start is not None]
     if len(stated) < len(starts) or np.ptp(stated) == 0.0:
         return None
-    found = []
-    for k, (group, _) in enumerate(case.scatter):
-        factors = np.array([own[len(own) - len(case.scatter) + k] for own in model.initial])
-        if np.ptp(factors) > 0.0:
-            chance, change = trend(np.array(stated), factors)
-            element = case.system.info.parameters[group[0]].element or ""
-            found.append(Drift(element, float(np.expm1(change)), min(1.0, chance * len(case.scatter))))
+    elements = [case.system.info.parameters[group[0]].element or "" for group, _ in case.scatter]
+    factors = np.array([own[len(own) - len(case.scatter) :] for own in model.initial]).T
+    differ = [k for k, own in enumerate(factors) if np.ptp(own) > 0.0]
+    if not differ:
+        return None
+    chances, changes = trends(np.array(stated), factors[differ])
+    found = [
+        Drift(elements[k], float(np.expm1(change)), float(chance))
+        for k, chance, change in zip(differ, chances, changes, strict=True)
+    ]
     telling = [drift for drift in found if drift.tells]
-    return min(telling or found, key=lambda drift: drift.chance, default=None)
+    return min(telling or found, key=lambda drift: drift.chance)
 
 
-def trend(start: np.ndarray, value: np.ndarray) -> tuple[float, float]:
-    """How often another order of the values would follow a straight line or a settling one over `start` as closely,
-    and the change along the closest one from the first start to the last."""
+def trends(start: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For each row of `values`, (elements, runs): how often some row would follow a straight line or a settling one
+    over `start` as closely, were the runs in another order, and its change along the closest one from the first start
+    to the last. Rows that change together count as one that way (Westfall and Young 1993)."""
     curves = _curves(start)
-    away = value - np.mean(value)
-    fits = curves @ away
-    closest = int(np.argmax(np.abs(fits)))
-    others = np.max(np.abs(curves @ away[_orders(len(value))].T), axis=0)
-    along = fits[closest] * curves[closest]
-    as_close = np.mean(others >= np.abs(fits[closest]) * (1.0 - 1e-9))
-    return float(as_close), float(along[np.argmax(start)] - along[np.argmin(start)])
+    away = values - np.mean(values, axis=1, keepdims=True)
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    fits = away @ curves.T
+    closest = np.argmax(np.abs(fits), axis=1)
+    rows = np.arange(len(values))
+    orders = _orders(len(start))
+    others = np.max([np.max(np.abs(curves @ row[orders].T), axis=0) for row in away], axis=0)
+    chances = np.mean(others >= np.abs(fits[rows, closest])[:, None] * (1.0 - 1e-9), axis=1)
+    along = fits[rows, closest][:, None] * curves[closest]
+    along *= np.linalg.norm(values - np.mean(values, axis=1, keepdims=True), axis=1, keepdims=True)
+    return np.asarray(chances), np.asarray(along[:, np.argmax(start)] - along[:, np.argmin(start)])
 
 
 def _curves(start: np.ndarray) -> np.ndarray:
