@@ -10,6 +10,7 @@ import tendonlab as tl
 from tendonlab.cli.demo import bundled
 from tendonlab.diagnosis.answer.verdict import (
     FAR,
+    FAR_REPEATED,
     PARTLY,
     PARTLY_ASSUMED,
     STRAINED,
@@ -20,7 +21,14 @@ from tendonlab.diagnosis.answer.verdict import (
     decide,
     marginals,
 )
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, RINGS, Patterns
+from tendonlab.diagnosis.discrepancy import (
+    FAR_SCATTERED,
+    FAR_TRAINED,
+    FOLLOWED,
+    FOLLOWED_REPEATED,
+    RINGS,
+    Patterns,
+)
 from tendonlab.diagnosis.drift import RARE
 
 
@@ -87,7 +95,7 @@ def test_an_effect_beside_friction_that_follows_the_session_is_not_the_whole_ans
     assert decide(rounds, ("a",), replace(near, drifted=0.1 * RARE)).verdict == "unknown_effect"
 
 
-@pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 3.0)])
+@pytest.mark.parametrize(("repeated", "tuned", "refitted"), [(False, 9.0, 1.42), (True, 1.22, 1.6)])
 def test_where_tuning_gains_next_to_nothing_there_is_no_gap(repeated: bool, tuned: float, refitted: float) -> None:
     """A floor that is assumed, or from few repeats, may be too low: what tuning does not shrink is no parameter."""
     levels = Levels(
@@ -112,7 +120,8 @@ def test_a_simulator_without_any_error_has_no_gap(repeated: bool) -> None:
 
 
 def test_where_runs_repeat_training_runs_decide_unless_held_out_ones_are_far() -> None:
-    assert nothing_selected(refitted=0.9 * FAR, repeated=True, tuned=1.1).verdict == "parameters_only"
+    assert nothing_selected(refitted=0.9 * FAR_REPEATED, repeated=True, tuned=1.0).verdict == "parameters_only"
+    assert nothing_selected(refitted=1.1 * FAR_REPEATED, repeated=True, tuned=1.0).verdict == "unknown_effect"
     assert nothing_selected(refitted=1.0, repeated=True, tuned=2.0).verdict == "unknown_effect"
     far = nothing_selected(refitted=800.0, repeated=True, tuned=0.97)  # a stop that the training runs do not reach
     assert far.verdict == "unknown_effect"
@@ -120,9 +129,24 @@ def test_where_runs_repeat_training_runs_decide_unless_held_out_ones_are_far() -
 
 
 def test_held_out_runs_that_are_far_are_no_gap_of_none() -> None:
-    levels = Levels(nominal=1.05, tuned=1.0, refitted=4.3, explained=None, left=4.3, repeated=True)
+    """A floor from few repeats may be too low, of training and held-out runs alike."""
+    levels = Levels(nominal=1.05, tuned=1.0, refitted=2.3, explained=None, left=2.3, repeated=True)
     assert decide((), (), levels).verdict == "unknown_effect"
     assert decide((), (), replace(levels, refitted=1.0)).verdict == "no_gap"
+    assert decide((), (), replace(levels, nominal=1.31, tuned=1.29)).verdict == "no_gap"
+
+
+@pytest.mark.parametrize("nominal", [1.05, 1e4])
+def test_what_follows_the_motion_is_something_unknown_where_repeats_tell_the_noise(nominal: float) -> None:
+    near = Levels(nominal=nominal, tuned=1.0, refitted=1.0, explained=None, left=1.0, repeated=True)
+    found = [
+        decide((), (), replace(near, patterns=Patterns(share * FOLLOWED_REPEATED))) for share in (0.0, 0.5, 1.1, 3.0)
+    ]
+    told = "no_gap" if nominal < 2.0 else "parameters_only"
+    assert [verdict.verdict for verdict in found] == [told] * 2 + ["unknown_effect"] * 2
+    unknown = [verdict.probability["unknown_effect"] for verdict in found]
+    assert unknown == sorted(unknown)
+    assert unknown[1] < 0.1 < 0.9 < unknown[-1]
 
 
 @pytest.mark.cpu(10)

@@ -13,7 +13,7 @@ from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, RINGS
+from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, RINGS
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.workshop import NOTHING
@@ -209,8 +209,8 @@ def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, e
 
 
 def no_noise(levels: Levels, *, selected: bool) -> list[str]:
-    """Warnings where what the final model leaves cannot be noise although nothing repeats, or where it needs parameters
-    that were stated to be elsewhere. `selected`: whether it has effects of its own."""
+    """Warnings where what the final model leaves cannot be noise, or where it needs parameters that were stated to be
+    elsewhere. `selected`: whether it has effects of its own."""
     found = []
     if levels.strained >= (STRAINED_BESIDE if selected else STRAINED):
         found.append(
@@ -218,13 +218,13 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
             f"{levels.strained:.0f} stated standard deviations away from its stated value, so something else is "
             "missing. If that standard deviation was stated too small, nothing else may be."
         )
-    if levels.patterns.followed >= FOLLOWED:
+    if levels.patterns.followed >= levels.most_followed(selected=selected):
         found.append(
             "The remaining error follows the motion, or drifts alike in every run: a map over direction and place, or "
             "over direction and time since the start, learnt from other experiments, predicts "
             f"{100 * levels.patterns.followed:.0f} % of its mean square. So it is not noise."
         )
-    if levels.patterns.ringing >= RINGS:
+    if levels.patterns.ringing >= RINGS and not levels.repeated:
         found.append(
             f"The remaining error rings: the frequencies about {levels.patterns.frequency:.2g} Hz hold "
             f"{100 * levels.patterns.ringing:.0f} % of its mean square in most experiments. So it is not noise. A "

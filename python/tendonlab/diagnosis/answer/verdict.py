@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, FOLLOWED, NO_PATTERNS, RINGS, Patterns
+from tendonlab.diagnosis.discrepancy import (
+    FAR_SCATTERED,
+    FAR_TRAINED,
+    FOLLOWED,
+    FOLLOWED_BESIDE,
+    FOLLOWED_REPEATED,
+    NO_PATTERNS,
+    RINGS,
+    Patterns,
+)
 from tendonlab.diagnosis.drift import RARE
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.fitting.noise import NEAR_FLOOR
@@ -16,9 +25,12 @@ from tendonlab.fitting.noise import NEAR_FLOOR
 LOWERED = 0.05  # share of the mean square that tuning must remove to have gained anything
 NO_GAP = 1.15  # whitened mean square below which the nominal simulator is at the floor
 FAR = 4.0  # mean square of held-out runs, over the floor, that is no noise: 130 rigs that lack nothing left 3.1 at most
+FAR_REPEATED = (
+    1.8  # the same where repeats tell the floor, over what training runs leave: 80 such rigs left 1.3 at most
+)
 EXPLAINED = 0.75  # share of the held-out excess that library effects must remove to be the whole answer
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
-EXPLAINED_FAR = 0.85  # the same where they leave twice `FAR`: right effects removed 0.93 and more there
+EXPLAINED_FAR = 0.85  # the same where they leave twice `FAR`: right effects removed 0.884 and more there
 WELL_KNOWN = 2.5  # by how much less that share scatters there
 STRAINED = 8.0  # stated sd from which on tuning a parameter is not believed: 92 rigs that lack nothing needed 6 at most
 AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
@@ -39,11 +51,11 @@ class Levels:
     the fit foretells it, not as its uncertainty allows; None where these are one. `explained`: share of the
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
-    from repeats. Where none does, `trained`: of the final model on the training experiments, in units of what
-    run-to-run friction may leave, and the `patterns` in that; and, where nothing was selected, `scattered`: by how much
-    friction differs from run to run. `strained`: by how many stated standard deviations the fit pulled the parameter
-    that it pulled farthest. `drifted`: the chance of a trend of
-    friction over the session, 1 where there is none that matters."""
+    from repeats. `patterns`: in what the final model leaves of the training experiments. Where nothing repeats,
+    `trained`: the mean square of that in units of what run-to-run friction may leave; and, where nothing was selected,
+    `scattered`: by how much friction differs from run to run. `strained`: by how many stated standard deviations the
+    fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of friction over the session, 1
+    where there is none that matters."""
 
     nominal: float
     tuned: float
@@ -58,6 +70,13 @@ class Levels:
     strained: float = 0.0
     drifted: float = 1.0
     foretold: float | None = None
+
+    def most_followed(self, *, selected: bool) -> float:
+        """Share of what the final model leaves that may follow the motion; beyond that something is missing. Where
+        effects were `selected`, another form of them leaves such errors as well."""
+        if not self.repeated:
+            return FOLLOWED
+        return FOLLOWED_BESIDE if selected else FOLLOWED_REPEATED
 
 
 @dataclass(frozen=True)
@@ -82,15 +101,18 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)
-    is_missing = levels.drifted <= RARE or (levels.repeated and levels.refitted > FAR)
+    noise = _noise_room(levels, selected=bool(selected))
+    is_missing = levels.drifted <= RARE or (levels.repeated and min(_far_room(levels), noise) < 0.0)
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     whole = max(_whole(levels), NO_GAP - levels.left)
-    spare = min(_noise_room(levels), whole, _chance_room(levels), _belief_room(levels, STRAINED_BESIDE))
+    spare = min(noise, whole, _chance_room(levels), _belief_room(levels, STRAINED_BESIDE))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {
         "data_fault": 0.0,
-        "no_gap": _step(SOFT if at_floor else NO_GAP - levels.nominal) * (1.0 if not selected else none),
+        "no_gap": _step(SOFT if at_floor else NO_GAP - levels.nominal)
+        * (none if selected else 1.0)
+        * (_step(room) if is_missing else 1.0),
         "parameters_only": _step(levels.nominal - NO_GAP) * _step(gained) * none * _step(room),
         "effect": (1.0 - none) * (_step(spare) if selected else 0.1),
         "unknown_effect": (1.0 - none) * (_step(-spare) if selected else 0.5) + (0.0 if room > 0 else none),
@@ -123,10 +145,11 @@ def _whole(levels: Levels) -> float:
 
 def _room(levels: Levels) -> float:
     """By how much an error may be noise; below 0 it is none."""
-    common = min(FAR - levels.refitted, _chance_room(levels), _belief_room(levels, STRAINED))
+    noise = _noise_room(levels, selected=False)
+    common = min(_far_room(levels), noise, _chance_room(levels), _belief_room(levels, STRAINED))
     if levels.repeated:
         return min(NEAR_FLOOR - levels.tuned, common)
-    return min(SOFT, _noise_room(levels), FAR_SCATTERED - levels.scattered, common)
+    return min(SOFT, FAR_SCATTERED - levels.scattered, common)
 
 
 def _belief_room(levels: Levels, most: float) -> float:
@@ -139,11 +162,17 @@ def _chance_room(levels: Levels) -> float:
     return SOFT * float(np.log(max(levels.drifted, 1e-9) / RARE))
 
 
-def _noise_room(levels: Levels) -> float:
-    """Share by which what the final model leaves of the training experiments keeps clear of what is no noise, where
-    nothing repeats."""
-    found = levels.patterns
-    return min(1.0 - levels.trained / FAR_TRAINED, 1.0 - found.followed / FOLLOWED, 1.0 - found.ringing / RINGS)
+def _far_room(levels: Levels) -> float:
+    """By how much held-out experiments keep clear of what is no noise: a stop, say, that no training run reaches."""
+    return (FAR_REPEATED * max(1.0, levels.tuned) if levels.repeated else FAR) - levels.refitted
+
+
+def _noise_room(levels: Levels, *, selected: bool) -> float:
+    """Share by which what the final model leaves of the training experiments keeps clear of what is no noise."""
+    follows = 1.0 - levels.patterns.followed / levels.most_followed(selected=selected)
+    if levels.repeated:
+        return follows
+    return min(1.0 - levels.trained / FAR_TRAINED, follows, 1.0 - levels.patterns.ringing / RINGS)
 
 
 def _step(x: float) -> float:
