@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from checking.pendulum import CONSTANT, late_run, record
-from tendonlab.checking.equation import Equation
+from tendonlab.checking.equation import MOST_FAILURES, Equation, _without_failures
 from tendonlab.checking.lags import _scanned
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.scales import wrong_factors
@@ -205,3 +205,15 @@ def test_a_gain_scales_all_but_what_drives(tmp_path: Path) -> None:
     other = terms(Equation(rig, motor), logs).residual
     moved = found.residual + (5.0 / 4.0 - 1.0) * found.columns[names.index("resistance")]
     np.testing.assert_allclose(moved, 5.0 / 4.0 * other, atol=1e-3 * np.std(moved))
+
+
+def test_a_few_samples_without_a_value_take_that_of_the_sample_before() -> None:
+    found = np.arange(600.0).reshape(2, 3, 100)
+    few = found.copy()
+    few[0, 1, 0] = few[1, 2, 50] = np.nan
+    kept = _without_failures(few)
+    np.testing.assert_array_equal(np.delete(kept, (0, 50), axis=2), np.delete(found, (0, 50), axis=2))
+    np.testing.assert_array_equal(kept[..., [0, 50]], found[..., [1, 49]])
+    many = found.copy()
+    many[..., : int(MOST_FAILURES * 100) + 1] = np.inf
+    np.testing.assert_array_equal(_without_failures(many), many)

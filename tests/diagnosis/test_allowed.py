@@ -4,34 +4,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pytest
 
+from diagnosis.conftest import SCATTER, measured_as
 from tendonlab.diagnosis.answer.allowed import allowed
 from tendonlab.diagnosis.answer.heldout import Replayed, rms
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
-from tendonlab.fitting.problem import Fitter
-
-SCATTER = 0.02
-
-
-@pytest.fixture(scope="module")
-def known(twin_case: Any) -> tuple[Any, Fitted]:
-    """The bundled rig as if its simulator were right, with friction that differs from run to run, and the model fitted
-    to its training experiments."""
-    names = [p.name for p in twin_case.system.info.parameters]
-    friction = tuple(names.index(f"joint_{name}") for name in ("coulomb", "viscous"))
-    case = replace(twin_case, scatter=((friction, SCATTER),))
-    right = tuple(measured_as(case, i, 0.0) for i in range(len(case.experiments)))
-    case = replace(case, prepared=right)
-    return case, Fitter(case, white(case.noise), None).fit(case.system, solve=False)  # type: ignore[arg-type]
-
-
-def measured_as(case: Any, i: int, friction: float, system: Any = None) -> Any:
-    """Experiment i as the simulator gives it, its friction that many times e higher."""
-    own = [*case.prepared[i].initial_mean, friction]
-    measured = case.run(i, system or case.system, own)["outputs"]
-    return replace(case.prepared[i], measured=np.where(np.isfinite(case.prepared[i].measured), measured, np.nan))
 
 
 def again(case: Any, fitted: Fitted, ready: Any) -> tuple[np.ndarray, np.ndarray]:

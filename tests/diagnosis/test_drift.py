@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tendonlab.diagnosis.drift import LEAST, MOST_ORDERS, RARE, over_session, trends
+from diagnosis.conftest import measured_as
+from tendonlab import _core
+from tendonlab.diagnosis.drift import LEAST, MOST_ORDERS, RARE, held_out_factors, over_session, trends
+from tendonlab.fitting.noise import white
+from tendonlab.fitting.problem import Fitter
 
 STARTS = np.array([0.0, 55.0, 99.0, 229.0, 255.0, 343.0, 388.0])
 
@@ -78,6 +83,30 @@ def test_the_least_likely_trend_names_the_element() -> None:
     found = over_session(case(elements=("motor", "joint")), model(chance, warming(0.1, 60.0)))
     assert found is not None
     assert found.element == "joint"
+
+
+def test_held_out_experiments_count() -> None:
+    """Four runs have too few orders to tell a trend; with those held out, which may come first, there are enough."""
+    rig, factors = case(), warming(0.1, 200.0)
+    rig.train, test = [3, 4, 5, 6], [0, 1, 2]
+    few = over_session(rig, model(factors[3:]))
+    found = over_session(rig, model(factors[3:]), {i: [factors[i]] for i in test})
+    assert few is not None
+    assert found is not None
+    assert few.chance > RARE > found.chance
+    assert found.change == pytest.approx(np.expm1(factors[-1] - factors[0]), abs=0.015)
+    rig.experiments[0].start = None
+    assert over_session(rig, model(factors[3:]), {i: [factors[i]] for i in test}) is None
+
+
+def test_held_out_factors_are_those_of_the_friction_there(known: Any) -> None:
+    case, fitted = known
+    i = case.test[0]
+    ready = tuple(measured_as(case, k, 0.07) if k == i else old for k, old in enumerate(case.prepared))
+    fitter = Fitter(replace(case, prepared=ready), white(case.noise), _core.Cancel())
+    assert held_out_factors(fitter, fitted)[i] == pytest.approx([0.07], abs=0.01)
+    nothing_held_out = replace(fitter, case=case.training_on(range(len(case.experiments))))
+    assert held_out_factors(nothing_held_out, fitted) == {}
 
 
 def test_a_trend_too_small_to_matter_tells_nothing() -> None:

@@ -144,6 +144,22 @@ def test_a_step_of_the_torque_that_would_move_the_joint_early_or_late_is_kept(ri
     assert len(thin(rig, motor_torque=stepped)[1].time) == samples
 
 
+@pytest.mark.parametrize(("step", "samples"), [(0.0, 401), (0.3, 4001)])
+def test_a_step_of_a_servos_target_is_kept(tmp_path, step, samples):
+    """Smoothed, the drive would pull to it early, and less hard than a drive at its limit does."""
+    values = {"inertia": 0.02, "torque_constant": 1.4, "resistance": 2.0, "proportional_gain": 35.0, "coulomb": 0.1}
+    lines = ["format = 'tendonlab-dataset/1'", "name = 'servo'", "[system]", "kind = 'servo_pendulum'"]
+    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in values.items())]
+    lines += ["voltage_limit = { value = 7.4 }", "gravity_torque = { value = 0.5 }", "[signals.target_angle]"]
+    lines += ["[signals.joint_angle]", f"noise_sd = {NOISE}", "[[experiments]]", "name = 'a'", "file = 'a.csv'"]
+    (tmp_path / "dataset.toml").write_text("\n".join([*lines, "split = 'train'"]), encoding="utf-8")
+    target = 0.3 * np.sin(2 * np.pi * 0.5 * TIME) + step * (TIME > 2.0035)
+    angle = 0.3 * np.sin(2 * np.pi * 0.5 * TIME - 0.1) + NOISE * RNG.normal(size=len(TIME))
+    table = np.column_stack([TIME, target, angle])
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,target_angle,joint_angle", comments="")
+    assert len(thinned(tl.load(tmp_path))["a"].time) == samples
+
+
 @pytest.mark.parametrize(("jump", "samples"), [(3.0, 401), (30.0, 4001)])
 def test_an_output_that_jumps_is_kept(rig, jump, samples):
     jumped = rig.experiments[0].data["joint_angle"] + jump * NOISE * (TIME > 2.0035)

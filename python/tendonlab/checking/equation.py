@@ -14,6 +14,8 @@ from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.catalog import MEMORY, SystemInfo
 from tendonlab.simulation.system import System
 
+MOST_FAILURES = 0.02  # share of the samples where the equations may have no value
+
 
 @dataclass(frozen=True)
 class Equation:
@@ -86,7 +88,7 @@ class Equation:
         found = np.empty((1 + len(nudges), len(self.predicted), samples))
         for stretch in stretches:
             found[..., stretch.own] = stretch.missing(self, nudges)
-        return found
+        return _without_failures(found)
 
     @cached_property
     def places(self) -> tuple[int, ...]:
@@ -197,6 +199,16 @@ class Stretch:
             kind=info.kind, time=self.time.tolist(), inputs=self.inputs, loop=_core.Loop(), position=still,
             velocity=still,
         )  # fmt: skip
+
+
+def _without_failures(found: np.ndarray) -> np.ndarray:
+    """The same with the valid sample before in place of the few where the equations have no value: lags that are
+    tried, or noise, may slacken a cable beyond what a law is made for."""
+    valid = np.isfinite(found).all(axis=(0, 1))
+    if valid.all() or np.mean(~valid) > MOST_FAILURES:
+        return found
+    before = np.maximum.accumulate(np.where(valid, np.arange(len(valid)), int(np.argmax(valid))))
+    return np.asarray(found[..., before])
 
 
 def _motion(

@@ -19,7 +19,7 @@ from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.problem import PLAIN, Fitter
 from tendonlab.fitting.replay import opened
 from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
@@ -33,7 +33,6 @@ NO_REPEAT = (
     "The closed loop does not repeat, as in a limit cycle whose phase is chance. So errors are those of an injection, "
     "which follows the logged motion."
 )
-PLAIN = 1e-3  # relative change of the cost at which the fit of the untouched simulator's initial states ends
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
 log = logging.getLogger("tendonlab")

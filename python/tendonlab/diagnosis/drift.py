@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import permutations
 from math import factorial
 
 import numpy as np
 
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.problem import PLAIN, Fitter, initial_state
+
+Factors = Mapping[int, Sequence[float]]  # logarithms of the factors on friction of each element, by experiment
 
 RARE = 0.01  # chance of such a trend in any other order of the runs, below which it is none
 LEAST = 0.03  # change over the session, relative: what friction may differ by from run to run, and a half more
@@ -33,15 +38,17 @@ class Drift:
         return self.chance <= RARE and abs(self.change) >= LEAST
 
 
-def over_session(case: Case, model: Fitted) -> Drift | None:
-    """The least likely trend of the factors that `model` needs on friction from run to run; None where the dataset
-    does not state when each training experiment started, or nothing differs."""
-    starts = [case.experiments[i].start for i in case.train]
+def over_session(case: Case, model: Fitted, held_out: Factors | None = None) -> Drift | None:
+    """The least likely trend of the factors that `model` needs on friction from run to run, those of experiments
+    `held_out` included; None where the dataset does not state when each of these started, or nothing differs."""
+    num = len(case.scatter)
+    of = {i: own[len(own) - num :] for i, own in zip(case.train, model.initial, strict=True)} | dict(held_out or {})
+    starts = [case.experiments[i].start for i in of]
     stated = [start for start in starts if start is not None]
     if len(stated) < len(starts) or np.ptp(stated) == 0.0:
         return None
     elements = [case.system.info.parameters[group[0]].element or "" for group, _ in case.scatter]
-    factors = np.array([own[len(own) - len(case.scatter) :] for own in model.initial]).T
+    factors = np.array(list(of.values())).T
     differ = [k for k, own in enumerate(factors) if np.ptp(own) > 0.0]
     if not differ:
         return None
@@ -52,6 +59,22 @@ def over_session(case: Case, model: Fitted) -> Drift | None:
     ]
     telling = [drift for drift in found if drift.tells]
     return min(telling or found, key=lambda drift: drift.chance)
+
+
+def held_out_factors(fitter: Fitter, model: Fitted) -> Factors:
+    """Logarithms of the factors on the friction of each element that suit held-out experiments best, by experiment;
+    none where `model` cannot be simulated there."""
+    case = fitter.case
+    own = [0.0] * len(case.scatter)
+    if not own or not case.test:
+        return {}
+    others = replace(fitter, case=case.training_on(case.test))
+    try:
+        initial = [[*initial_state(case, model.system, i), *own] for i in case.test]
+        fit = others.fit(model.system, initial=initial, known=True, tolerance=PLAIN)
+    except NumericalError:
+        return {}
+    return {i: unknowns[len(unknowns) - len(own) :] for i, unknowns in zip(case.test, fit.initial, strict=True)}
 
 
 def trends(start: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -26,6 +26,7 @@ from tendonlab.simulation.system import System
 NUM_RESTARTS = 3
 NUM_CENTRED = 2  # times that a fit goes on once its friction is centred
 MAX_ITERATIONS, NEARLY = 25, 1e-6  # of a fit of a diagnosis
+PLAIN = 1e-3  # relative change of the cost at which a fit of single experiments' own unknowns ends
 BETTER = 0.99  # share of a run's cost that its own unknowns must at most leave to start again from them
 
 

@@ -27,6 +27,7 @@ MOST_LOST = 0.2  # rms of an input's noise over that of the input: more shakes a
 MOST_LOST_OF_A_LOOP = 0.05  # the same where a simulated controller would make that noise again
 MOST_SHIFTED, SETTLES = 1.0, 4  # sd of a sensor by which a command that is smoothed may shift it, and within how many
 # samples that are kept: a joint that stops then stays off for as long as friction holds it
+SMALL = 1e-3  # change of a target that no drive answers with all that it can
 THINNED = (
     "The logs were thinned from {:.0f} to {:.0f} samples per second; errors and noise floors are those of the smoothed "
     "signals."
@@ -134,12 +135,29 @@ def _shifted(dataset: Dataset, system: System, noise: Mapping[str, float], facto
     """How far a command between its means, instead of the logged one, moves the motor at most, in sd of its sensor. A
     step of the command keeps its impulse, and comes up to half a sample early or late."""
     motor = next((s.name for s in system.info.outputs if s.axis == 0 and s.name in noise), None)
-    if motor is None or not system.info.commanded:
+    command = system.info.inputs[0]
+    if motor is None or not (system.info.commanded or command.between == "hold"):
         return 0.0
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
-    command = system.info.inputs[0]
+    effort = 1.0 if system.info.commanded else _effort_per_target(system)
     shifts = (_shift(e, command, factor) for e in dataset if command.name in e.data.columns)
-    return max(shifts, default=0.0) / (inertia * noise[motor])
+    return effort * max(shifts, default=0.0) / (inertia * noise[motor])
+
+
+def _effort_per_target(system: System) -> float:
+    """Effort on the motor at rest per unit of its first input: of a servo, how hard its drive pulls."""
+    kind, dof, time = system.kind, system.info.dof, np.array([0.0, 1.0])
+    others = [_core.Signal()] * (len(system.info.inputs) - 1)
+    still = [0.0] * dof
+    effort = []
+    for target in (0.0, SMALL):
+        held = _core.Signal(time, np.array([[target, 0.0, 0.0, 0.0]] * 2), False)
+        given = _core.Experiment(
+            kind=kind, time=time.tolist(), inputs=(held, *others), loop=_core.Loop(), position=still, velocity=still
+        )
+        balance = _core.balance(kind, np.array([system.values()]), system.active(), given, *np.zeros((2, dof, 2)))
+        effort.append(float(balance["effort"][0, 0, 0]))
+    return abs(effort[1] - effort[0]) / SMALL
 
 
 def _shift(experiment: Experiment, given: InputInfo, factor: int) -> float:

@@ -23,7 +23,7 @@ from tendonlab.diagnosis.answer.outlier_run import OutlierRun, find_outlier_run
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
 from tendonlab.diagnosis.discrepancy import patterns, scattered
-from tendonlab.diagnosis.drift import Drift, over_session
+from tendonlab.diagnosis.drift import Drift, held_out_factors, over_session
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.errors import NumericalError
@@ -48,7 +48,7 @@ def answer(
     weighed = Judged.of(case, fitter.floor, search)
     floor, judged, stages = weighed.floor, weighed.experiments, weighed.stages
     shown, trouble = _shown(weighed, loop, search)
-    drift = over_session(case, search.final)
+    drift = over_session(case, search.final, held_out_factors(fitter, search.final))
     outlier = None if search.selected else find_outlier_run(case, search.tuned, floor)
     near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
     levels = _levels(search, nominal, stages, near, floor, drift, outlier)

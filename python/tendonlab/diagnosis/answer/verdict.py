@@ -102,7 +102,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)
     noise = _noise_room(levels, selected=bool(selected))
-    is_missing = levels.drifted <= RARE or (levels.repeated and min(_far_room(levels), noise) < 0.0)
+    is_far = min(_far_room(levels), noise if levels.nominal > NO_GAP else 1.0) < 0.0
+    is_missing = levels.drifted <= RARE or (levels.repeated and is_far)
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     whole = max(_whole(levels), NO_GAP - levels.left)
