@@ -6,6 +6,7 @@ import numpy as np
 
 from tendonlab.checking.clocks import clock_findings
 from tendonlab.checking.copies import copy_findings
+from tendonlab.checking.dead import dead_outputs
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.finding import PROBLEMS, Check, Finding
 from tendonlab.checking.lags import lags
@@ -38,7 +39,8 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     system = simulator_of(dataset, system)
     marked = {} if system.info.steady else marks(dataset)
     found, notes = [*copy_findings(dataset), *sample_findings(dataset, marked)], []
-    first = [*pushing_cables(dataset, system), *([] if system.info.steady else odd_clocks(dataset))]
+    first = [*pushing_cables(dataset, system)]
+    first += [] if system.info.steady else [*odd_clocks(dataset), *dead_outputs(dataset, system)]
     if first:  # all else is judged once these are corrected
         found += first
     elif system.info.steady:

@@ -34,7 +34,7 @@ ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channel
 MERE = 0.9  # share of the gain of a negative factor at which a mere sign is believed,
 HEALED = 0.1  # and share of the level of an equation that such a sign leaves
 AWAY = RATIO**-6  # of a channel that is explained away
-BLOCKING = 1.7  # a factor below it is a parameter
+BLOCKING = 1.85  # a factor below it is a parameter: friction that grows with the load asked for 1.80
 
 
 @dataclass(frozen=True)
