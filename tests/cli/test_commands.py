@@ -54,7 +54,7 @@ def test_systems_lists_every_kind_with_its_signals(capsys: Printed) -> None:
 
 @pytest.mark.parametrize(("axis", "unit"), [("rotary", "N·m"), ("linear", "N")])
 def test_effects_lists_each_with_equation_source_and_units(capsys: Printed, axis: str, unit: str) -> None:
-    assert main(["effects", "--system", "two_inertia", "--axis", axis]) == 0
+    assert main(["effects", "two_inertia", "--axis", axis]) == 0
     text = " ".join(capsys.readouterr().out.split())
     for effect in tl.system_info("two_inertia").effects:
         assert (effect.name in text) != effect.structural
@@ -212,7 +212,7 @@ def test_blind_is_among_the_commands(capsys: Printed, tmp_path: Path) -> None:
         (["demo", "--out", "{tiny}/run-1.csv"], "run-1.csv' is a file: expected a folder"),
         (["diagnose", "emps"], "`tendonlab datasets prepare emps` fetches this recording"),
         (["systems", "rigid_join"], "did you mean 'rigid_joint'?"),
-        (["effects", "--system", "two_inertial"], "did you mean 'two_inertia'?"),
+        (["effects", "two_inertial"], "did you mean 'two_inertia'?"),
         (["datasets", "prepare", "empd"], "'empd' is no public dataset"),
     ],
 )
@@ -287,7 +287,7 @@ def test_a_reader_that_leaves_is_no_error(tmp_path: Path) -> None:
 
 
 def test_a_terminal_without_the_letters_still_gets_the_answer(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tendonlab", "effects", "--system", "rigid_joint"]
+    command = [sys.executable, "-m", "tendonlab", "effects", "rigid_joint"]
     plain = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = subprocess.run(command, cwd=tmp_path, env=plain, capture_output=True, encoding="ascii", check=False)
     assert (done.returncode, done.stderr) == (0, "")

@@ -16,7 +16,6 @@ from tendonlab.errors import DatasetError, NumericalError, ParameterError
 if TYPE_CHECKING:
     from tendonlab.data import Dataset, Experiment
     from tendonlab.report.diagnosis import Diagnosis
-    from tendonlab.simulation.catalog import SystemInfo
     from tendonlab.simulation.system import System
 
 Arguments = argparse.Namespace
@@ -144,12 +143,15 @@ def _add_sweep(commands: Any) -> None:
 
 def _add_effects(commands: Any) -> None:
     parser = _command(commands, "effects", _effects, "list the effects a system takes, with equations and parameters")
-    parser.add_argument("--system", metavar="KIND", help="default: all systems")
-    _add_axis(parser)
+    _add_kinds(parser)
 
 
 def _add_systems(commands: Any) -> None:
     parser = _command(commands, "systems", _systems, "list the systems, with equations, signals and parameters")
+    _add_kinds(parser)
+
+
+def _add_kinds(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("kinds", nargs="*", metavar="KIND", help="default: all systems")
     _add_axis(parser)
 
@@ -327,8 +329,7 @@ def _effects(given: Arguments) -> int:
     from tendonlab.cli.text import effects_text
     from tendonlab.simulation.catalog import kinds, system_info
 
-    infos: list[SystemInfo] = [system_info(kind) for kind in ([given.system] if given.system else kinds())]
-    print("\n\n".join(effects_text(info, axis=given.axis) for info in infos))
+    print("\n\n".join(effects_text(system_info(kind), axis=given.axis) for kind in given.kinds or kinds()))
     return 0
 
 
