@@ -2,12 +2,15 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import tendonlab as tl
 from checking.pendulum import Logs, record
+from tendonlab.checking.odd import _is_friction
 
 Run = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -65,3 +68,17 @@ def test_a_coarse_angle_may_rest(tmp_path: Path) -> None:
 def test_a_run_with_three_times_the_friction_is_no_mistake(tmp_path: Path) -> None:
     found = tl.check(with_one("quick", lambda t, q, i: (t, q, i + 0.3 * np.sign(np.gradient(q)))).write(tmp_path))
     assert not found.blocks
+
+
+@pytest.mark.parametrize(
+    ("signals", "moved", "friction"),
+    [(("input_velocity",), (), True), (("input_torque",), (), False), (("input_velocity",), ("joint_angle",), False)],
+)
+def test_a_turned_velocity_of_one_massless_run_may_be_friction(
+    signals: tuple[str, ...], moved: tuple[str, ...], friction: bool
+) -> None:
+    dimensions = {"input_torque": "effort", "input_velocity": "flow"}
+    inputs = [SimpleNamespace(name=name, dimension=dimension) for name, dimension in dimensions.items()]
+    equation: Any = SimpleNamespace(system=SimpleNamespace(info=SimpleNamespace(inputs=inputs)), moved=moved)
+    factor: Any = SimpleNamespace(signals=signals)
+    assert _is_friction(equation, factor) == friction

@@ -70,7 +70,7 @@ def odd_channels(equation: Equation, logs: Logs, marked: Marks) -> list[Finding]
     for i in odd:
         found += _still(equation, int(i))
         factors = _factors_of(equation, int(i), marked)
-        if factors and np.all(factors[0].fit.level < ALIKE * usual):
+        if factors and np.all(factors[0].fit.level < ALIKE * usual) and not _is_friction(equation, factors[0]):
             found += _told_of(equation, int(i), factors)
     others = np.argsort(excess)[: len(left) - len(odd)]
     if found and any(_factors_of(equation, int(i), marked) for i in others[-2:]):  # the least usual ask for one, too
@@ -82,6 +82,13 @@ def _told_of(equation: Equation, experiment: int, factors: Sequence[Factor]) -> 
     """Findings about one experiment."""
     dataset = _alone(equation, experiment).dataset
     return [replace(f, experiment=dataset.experiments[0].name) for f in factor_findings(factors, dataset)]
+
+
+def _is_friction(equation: Equation, factor: Factor) -> bool:
+    """Whether a factor concerns only a velocity that turns friction, where nothing has a mass: far more friction in a
+    cold run asks for the same."""
+    flows = {s.name for s in equation.system.info.inputs if s.dimension == "flow"}
+    return not equation.moved and set(factor.signals) <= flows
 
 
 def _still(equation: Equation, experiment: int) -> Iterator[Finding]:
