@@ -36,7 +36,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     monkeypatch.setattr(answer, "strain", lambda case, model: 6.0)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
-    fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ())))
+    fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ()), train=range(5)))
     final = SimpleNamespace(mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
     search: Any = SimpleNamespace(tuned=tuned, final=final, selected=("x",), fitter=fitter)
     found = _levels(search, nominal, stages, stages, floor, None)
@@ -53,6 +53,9 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     assert none.explained is None
     assert none.patterns == (0.25, 0.1, 6.0)
     assert (none.trained, none.scattered) == ((1.0, 0.0) if repeated else (20.0, 3.0))
+    search.fitter.case.train = range(4)  # too few to tell what follows the motion where repeats say what is noise
+    few = _levels(search, nominal, stages, stages, floor, None)
+    assert few.patterns == (Patterns() if repeated else (0.25, 0.1, 6.0))
 
 
 def test_the_gap_lists_floor_and_error_of_each_stage() -> None:

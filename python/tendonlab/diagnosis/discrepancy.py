@@ -22,6 +22,7 @@ FAR_TRAINED = 8.0  # mean square over what the sensors and run-to-run friction m
 FAR_SCATTERED = 4.0  # mean square of run-to-run factors over what is plausible: beyond twice that they are no noise
 FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
 FOLLOWED_REPEATED = 0.06  # the same where repeats tell the noise: 80 rigs that lack nothing left 0.03 at most
+ENOUGH = 5  # experiments of which maps tell that: among fewer, repeats of one motion foretell each other's chance
 FOLLOWED_BESIDE = 0.4  # the same beside effects, whose form may differ: 60 right ones left 0.3 at most
 RINGS = 0.2  # the same of one narrow band of frequencies: models without a resonance to find left 0.11 at most
 BAND, NUM_BANDS = 0.2, 60  # half width of a band of frequencies, of its middle, and how many are looked at

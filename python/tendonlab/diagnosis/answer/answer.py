@@ -22,7 +22,7 @@ from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun, find_outlier_run
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
-from tendonlab.diagnosis.discrepancy import patterns, scattered
+from tendonlab.diagnosis.discrepancy import ENOUGH, NO_PATTERNS, patterns, scattered
 from tendonlab.diagnosis.drift import Drift, held_out_factors, over_session
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
@@ -137,7 +137,7 @@ def _levels(
         repeated=floor.repeated,
         whitened=final.mean_square,
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
-        patterns=patterns(case, final),
+        patterns=patterns(case, final) if doubtful or len(case.train) >= ENOUGH else NO_PATTERNS,
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
         strained=strain(case, final),
         drifted=drift.chance if drift and drift.tells else 1.0,
