@@ -25,6 +25,7 @@ from tendonlab.diagnosis.discrepancy import (
     FAR_SCATTERED,
     FAR_TRAINED,
     FOLLOWED,
+    FOLLOWED_BESIDE,
     FOLLOWED_REPEATED,
     RINGS,
     Patterns,
@@ -138,7 +139,7 @@ def test_held_out_runs_that_are_far_are_no_gap_of_none() -> None:
 
 def test_what_follows_the_motion_is_something_unknown_where_repeats_tell_the_noise() -> None:
     """But not where the untouched simulator is at the floor: another integrator leaves as much."""
-    near = Levels(nominal=1e4, tuned=1.0, refitted=1.0, explained=None, left=1.0, repeated=True)
+    near = Levels(nominal=1e4, tuned=1.1, refitted=1.0, explained=None, left=1.0, repeated=True, whitened=1.1)
     found = [
         decide((), (), replace(near, patterns=Patterns(share * FOLLOWED_REPEATED))) for share in (0.0, 0.5, 1.1, 3.0)
     ]
@@ -148,6 +149,21 @@ def test_what_follows_the_motion_is_something_unknown_where_repeats_tell_the_noi
     assert unknown[1] < 0.1 < 0.9 < unknown[-1]
     at_floor = replace(near, nominal=1.05, patterns=Patterns(3.0 * FOLLOWED_REPEATED))
     assert decide((), (), at_floor).verdict == "no_gap"
+    far_below = replace(near, whitened=0.9, patterns=Patterns(3.0 * FOLLOWED_REPEATED))
+    assert decide((), (), far_below).verdict == "parameters_only"
+
+
+@pytest.mark.parametrize(
+    ("followed", "whitened", "verdict"),
+    [(0.9, 2.0, "effect"), (1.1, 2.0, "unknown_effect"), (2.0, 1.2, "effect")],
+)
+def test_beside_effects_more_may_follow_the_motion_and_all_of_it_at_the_floor(
+    followed: float, whitened: float, verdict: str
+) -> None:
+    rounds = (contest((), "a", a=0.99, none=0.01),)
+    levels = Levels(nominal=50.0, tuned=20.0, refitted=20.0, explained=0.95, left=3.0, repeated=True, whitened=whitened)
+    levels = replace(levels, patterns=Patterns(followed * FOLLOWED_BESIDE))
+    assert decide(rounds, ("a",), levels).verdict == verdict
 
 
 @pytest.mark.cpu(10)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from tendonlab.checking.finding import Finding
+from tendonlab.checking.logs import VELOCITIES
 from tendonlab.data import Dataset
-from tendonlab.errors import NumericalError
+from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.report.numbers import number, unit_text
 from tendonlab.simulation.system import System
 
 LEVELS = 3  # different readings between which a sensor at rest may flicker
 FAR = 100.0  # times what a sensor shows, by which the simulator moves there
-VELOCITIES = ("flow", "speed", "angular_speed")
+DIMENSIONS = (*VELOCITIES, "speed")  # of a velocity that may show a motion, that of a nut included
+MOTION = 0.5  # of the sd of a velocity: what it changes by from sample to sample is less, or it is noise
 
 
 def dead_outputs(dataset: Dataset, system: System) -> Iterator[Finding]:
@@ -23,18 +25,29 @@ def dead_outputs(dataset: Dataset, system: System) -> Iterator[Finding]:
     for output in system.info.outputs:
         if output.axis is None or output.name not in dataset.signals:
             continue
-        rows = [e.data[output.name].dropna().to_numpy(dtype=float) for e in dataset if output.name in e.data.columns]
+        rows = [row for _, row in _records(dataset, [output.name])]
         if not rows or max(len(np.unique(row)) for row in rows) > LEVELS:
             continue
-        shown = max(float(np.ptp(row)) for row in rows if len(row))
+        shown = max(float(np.ptp(row)) for row in rows)
         moved = _foretold(dataset, system, output.name)
-        if moved > FAR * shown and moved > 0.0:
+        if moved > FAR * shown:
             unit = unit_text(dataset.signals[output.name].si_unit)
+            velocity = _moving_velocity(dataset, system)
+            why = f"though {velocity} changes: its sensor is dead" if velocity else "dead, or held by friction"
             text = (
-                f"{output.name} stays within {number(shown)} {unit} in every experiment, where the simulator moves by "
+                f"{output.name} stays within {number(shown)} {unit} in every experiment, {why}. The simulator moves by "
             )
-            text += f"{number(moved)} {unit}: its sensor is dead, or friction that the simulator lacks holds the rig"
-            yield Finding(problem="constant", signal=output.name, detail=text, blocks=_shows_motion(dataset))
+            detail = f"{text}{number(moved)} {unit}"
+            yield Finding(problem="constant", signal=output.name, detail=detail, blocks=velocity is not None)
+
+
+def _records(dataset: Dataset, names: Sequence[str]) -> Iterator[tuple[str, np.ndarray]]:
+    """What was measured of these signals, by signal and experiment."""
+    for name in names:
+        for experiment in dataset:
+            row = experiment.data[name].dropna().to_numpy(dtype=float) if name in experiment.data.columns else []
+            if len(row):
+                yield name, np.asarray(row)
 
 
 def _foretold(dataset: Dataset, system: System, name: str) -> float:
@@ -43,24 +56,20 @@ def _foretold(dataset: Dataset, system: System, name: str) -> float:
     for experiment in dataset:
         try:
             found = system.under(experiment).simulate(experiment)[name].to_numpy()
-        except NumericalError:
+        except (NumericalError, ParameterError, DatasetError):
             continue
         farthest = max(farthest, float(np.ptp(found)))
     return farthest
 
 
-def _shows_motion(dataset: Dataset) -> bool:
-    """Whether a velocity was logged that changes by more than its sensor's noise may."""
-    of = {s.name: s.dimension for s in dataset.system().info.signals}
-    velocities = [name for name in dataset.signals if of.get(name) in VELOCITIES]
-    return any(
-        len(np.unique(e.data[name].dropna())) > LEVELS and _is_smooth(e.data[name].dropna().to_numpy(dtype=float))
-        for e in dataset
-        for name in velocities
-        if name in e.data.columns
+def _moving_velocity(dataset: Dataset, system: System) -> str | None:
+    """A logged velocity that is a motion, no noise: it changes little from sample to sample."""
+    velocities = [s.name for s in system.info.signals if s.dimension in DIMENSIONS and s.name in dataset.signals]
+    return next(
+        (
+            name
+            for name, row in _records(dataset, velocities)
+            if len(np.unique(row)) > LEVELS and np.std(np.diff(row)) < MOTION * np.std(row)
+        ),
+        None,
     )
-
-
-def _is_smooth(values: np.ndarray) -> bool:
-    """Whether neighbouring samples differ by far less than all of them do: a motion, and no noise."""
-    return float(np.std(np.diff(values))) < 0.5 * float(np.std(values))
