@@ -45,9 +45,8 @@ def _records(dataset: Dataset, names: Sequence[str]) -> Iterator[tuple[str, np.n
     """What was measured of these signals, by signal and experiment."""
     for name in names:
         for experiment in dataset:
-            row = experiment.data[name].dropna().to_numpy(dtype=float) if name in experiment.data.columns else []
-            if len(row):
-                yield name, np.asarray(row)
+            if name in experiment.data.columns and len(row := experiment.data[name].dropna()):
+                yield name, row.to_numpy(dtype=float)
 
 
 def _foretold(dataset: Dataset, system: System, name: str) -> float:
