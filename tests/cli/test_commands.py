@@ -6,12 +6,12 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 import pytest
 
 import tendonlab as tl
+from interrupting import small_tasks_and_ctrl_c
 from tendonlab.cli import demo
 from tendonlab.cli.commands import main
 from twin import TwinDiagnosis
@@ -261,16 +261,7 @@ def test_a_sweep_that_is_interrupted_says_what_is_kept_and_ends_with_130(
     out = tmp_path / "runs.zarr"
     command = ["sweep", str(tiny), "--grid", "inertia=0.4:0.5:6", "--quiet", *(["--out", str(out)] if kept else [])]
 
-    def interrupted(steps: Any, **_: Any) -> Any:
-        for done, step in enumerate(steps):
-            if done == 2:
-                raise KeyboardInterrupt
-            yield step
-
-    with monkeypatch.context() as during:
-        during.setattr("tendonlab.sweeping.sweep.track", interrupted)
-        for seconds in ("FIRST_SECONDS", "TASK_SECONDS"):
-            during.setattr(f"tendonlab.sweeping.sizes.{seconds}", 0.0)
+    with small_tasks_and_ctrl_c(monkeypatch, after=2):
         assert main(command) == 130
     printed = capsys.readouterr()
     left = int(re.findall(r"6 runs, 0 failed, (\d) interrupted", printed.out)[0])

@@ -17,8 +17,8 @@ import xarray as xr
 from sweeps import SIM, TIME, extremes, many, pushed
 
 import tendonlab as tl
+from interrupting import small_tasks_and_ctrl_c
 from tendonlab import _core
-from tendonlab.sweeping import sizes
 
 FORMATS = ("runs.zarr", "runs.parquet")
 
@@ -137,17 +137,7 @@ def test_ctrl_c_keeps_what_was_stored_and_the_same_call_goes_on(
 ) -> None:
     """Chunks of a point; Ctrl-C arrives while the 21st run is being noted."""
     whole = swept()
-    for seconds in ("FIRST_SECONDS", "TASK_SECONDS"):
-        monkeypatch.setattr(sizes, seconds, 0.0)
-
-    def interrupted(steps: Any, **_: Any) -> Any:
-        for k, step in enumerate(steps):
-            if k == 20:
-                raise KeyboardInterrupt
-            yield step
-
-    with monkeypatch.context() as during:
-        during.setattr("tendonlab.sweeping.sweep.track", interrupted)
+    with small_tasks_and_ctrl_c(monkeypatch, after=20):
         part = swept(tmp_path / name).compute()
     done = (part["message"] == "").to_numpy()
     assert 20 <= done.sum() < 50
