@@ -107,6 +107,8 @@ def test_held_out_factors_are_those_of_the_friction_there(known: Any) -> None:
     assert held_out_factors(fitter, fitted)[i] == pytest.approx([0.07], abs=0.01)
     nothing_held_out = replace(fitter, case=case.training_on(range(len(case.experiments))))
     assert held_out_factors(nothing_held_out, fitted) == {}
+    unstated = tuple(replace(e, start=None) if k == i else e for k, e in enumerate(case.experiments))
+    assert held_out_factors(replace(fitter, case=replace(case, experiments=unstated)), fitted) == {}
 
 
 def test_a_trend_too_small_to_matter_tells_nothing() -> None:

@@ -63,10 +63,10 @@ def over_session(case: Case, model: Fitted, held_out: Factors | None = None) -> 
 
 def held_out_factors(fitter: Fitter, model: Fitted) -> Factors:
     """Logarithms of the factors on the friction of each element that suit held-out experiments best, by experiment;
-    none where `model` cannot be simulated there."""
+    none where `model` cannot be simulated there, or nothing says when each experiment started."""
     case = fitter.case
     own = [0.0] * len(case.scatter)
-    if not own or not case.test:
+    if not own or not case.test or any(case.experiments[i].start is None for i in (*case.train, *case.test)):
         return {}
     others = replace(fitter, case=case.training_on(case.test))
     try:
