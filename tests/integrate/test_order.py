@@ -57,7 +57,9 @@ def test_a_decade_of_tolerance_costs_its_fifth_root_in_steps():
     """Order five, under an input without knots."""
     system, _, _ = CASES["smooth"]
     attempts = np.array([run(system, T, 0.05, tolerance=t).attempts for t in TOLERANCES])
-    assert np.all(attempts[1:] < 10**0.2 * 1.05 * attempts[:-1])
+    assert -np.polyfit(np.log10(TOLERANCES), np.log10(attempts), 1)[0] < 0.2
+    # from 1e-5 on, where steps are short enough to tell the order
+    assert np.all(attempts[2:] < 10**0.2 * 1.05 * attempts[1:-1])
 
 
 def test_inputs_straight_between_samples_need_about_a_step_a_sample():

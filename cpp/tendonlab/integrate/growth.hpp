@@ -1,5 +1,7 @@
 #pragma once
 // The error of a step, and what follows from it for the length of the next one: of one simulation, or of lanes.
+#include <algorithm>
+
 #include "tendonlab/integrate/experiment.hpp"
 #include "tendonlab/integrate/step.hpp"
 
@@ -45,4 +47,20 @@ TENDONLAB_INLINE P growth_after(const P& mean_square) {
   const P judged = select(mean_square <= 1.0, P(-larger(P(-factor), P(-6.0))), P(-factor));
   return select(mean_square < 1e300, judged, P(-0.15));  // else it is infinite or NaN
 }
+
+/// How the lengths that the error allows change from step to step. Where they fall, as before a breakaway, they fall
+/// on: without this foresight every other step would be rejected (Gustafsson's predictive control).
+class Trend {
+ public:
+  /// The length of the next step, from the one that the error of this step `allowed`.
+  double next(double allowed) {
+    const double fall = before > 0 ? std::min(1.0, allowed / before) : 1.0;
+    before = allowed;
+    return allowed * std::max(steepest, fall);
+  }
+
+ private:
+  static constexpr double steepest = 0.3;
+  double before = 0;  ///< what the step before allowed, 0: no step that tells
+};
 }  // namespace tendonlab::integrate

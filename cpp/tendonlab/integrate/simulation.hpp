@@ -132,9 +132,6 @@ class Simulation {
 
  private:
   static constexpr double past_guard = 1e-14;
-  /// Growth of the next step from which on a Rosenbrock step is so exact that its dense output, which is less accurate
-  /// inside than at the end, may tell the state at an event. That of an explicit step is as exact as its error says.
-  static constexpr double exact_inside = 2.0;
   static constexpr double stable = 2.5;         ///< rate times length up to which an explicit step damps (2.8 at most)
   static constexpr int STABLE_FOR = 64;         ///< explicit steps without events until stability is looked at again,
   static constexpr int STABLE_WITH_MEMORY = 3;  ///< with a memory, which settles faster the faster it slides
@@ -161,7 +158,7 @@ class Simulation {
               Record&& record) {
     const double length = tried.length;
     explicit_reach.learn(tried.explicitly, length, wish);
-    if (first.stale || (first.mode >= 0 && first.share < 0.97 && !tried.explicitly && wish < exact_inside))
+    if (first.stale || (first.mode >= 0 && first.share < 0.97 && !tried.explicitly))
       return aim(first, length, trajectory);
     retakes = false;
     const double taken = first.mode >= 0 ? first.share * length : length;
@@ -178,7 +175,9 @@ class Simulation {
       --pausing;
     else
       patience = FEWEST_PAUSES;
-    h = tried.lands || tried.pauses || tried.explicitly ? std::max(h, length * wish) : length * wish;
+    const bool cut = tried.lands || tried.pauses || tried.explicitly;
+    h = cut ? std::max(h, length * wish) : trend.next(length * wish);
+    if (cut || first.mode >= 0) trend = {};
     if (first.mode >= 0) {
       ++trajectory.events;
       pass_event(first);
@@ -385,6 +384,7 @@ class Simulation {
   Frame<System, T> frame;
   Frame<Values, double> plain_frame;
   double t, end, h, kink = 0;
+  Trend trend;
   ExplicitReach explicit_reach;
   double longest_stable = 0;
   int still_stable = 0;          ///< explicit steps for which that holds
