@@ -26,7 +26,7 @@ def check(system, by, command=COMMAND, *, step=1e-4, tolerance=1e-10, bound=1e-5
         for share in (1.0, 0.5, 2.0):
             size = share * step * value
             # an output that a parameter does not move shows the noise of the differences: the runs' error over the step
-            noise = TIGHT / size * np.sqrt(np.mean(exact.table**2, axis=1))
+            noise = 10 * TIGHT / size * np.sqrt(np.mean(exact.table**2, axis=1))
             found = differences(system, name, time, command, step=size, tolerance=TIGHT, **options)
             error = largest_error(exact.gradient[name], found, noise)
             worst[name] = min(error, worst.get(name, np.inf))

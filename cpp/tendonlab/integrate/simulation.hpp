@@ -87,7 +87,6 @@ class Simulation {
     arrive();
   }
   bool done() const { return !(t < end); }
-  /// What to try next.
   Attempt plan(Trajectory& trajectory) {
     if (++trajectory.attempts > settings.max_attempts)
       throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,
@@ -144,7 +143,9 @@ class Simulation {
   }
   void reject(const Attempt& tried, double wish, Trajectory& trajectory) {
     ++trajectory.rejected;
-    const double length = tried.length, shorter = length * std::max(0.15, -wish);
+    // Where steps fail in a row, the error does not fall as the method's order has it: each shrinks the more.
+    const double shrinks = tried.explicitly ? -wish : std::pow(-wish, ++failures);
+    const double length = tried.length, shorter = length * std::max(0.15, shrinks);
     const double knot = drive.next_knot(t + resolved()) - t;
     if (length > knot && shorter < knot) pausing = patience, patience = std::min(2 * patience, MOST_PAUSES);
     if (tried.explicitly)
@@ -160,7 +161,7 @@ class Simulation {
     explicit_reach.learn(tried.explicitly, length, wish);
     if (first.stale || (first.mode >= 0 && first.share < 0.97 && !tried.explicitly))
       return aim(first, length, trajectory);
-    retakes = false;
+    retakes = false, failures = 0;
     const double taken = first.mode >= 0 ? first.share * length : length;
     const Interval over{t, length, taken};
     if (step.bare_inside && (first.mode >= 0 || drive.remembers || record.looks_inside(over)))
@@ -210,7 +211,7 @@ class Simulation {
     retakes = true;
     const bool now = first.stale ? first.past || length < 1e4 * resolved() : first.share * length < resolved();
     if (now && first.stale && first.mode < System::directions)
-      choose_again(first);
+      turn(first), refresh();
     else if (now)
       ++trajectory.events, pass_event(first);  // nearer than time resolves
     else
@@ -320,10 +321,6 @@ class Simulation {
     const double u = unlimited(), limit = drive.from.loop.limit;
     return u > limit ? 1.0 : u < -limit ? -1.0 : 0.0;
   }
-  void choose_again(const Crossing& at) {
-    turn(at);
-    refresh();
-  }
   void pass_kink() {
     drive.pass_known(t);                 // at an instant that no parameter moves,
     if (varies(drive.late)) settle({});  // unlike the jump of the command, which is looked at alone
@@ -388,6 +385,7 @@ class Simulation {
   ExplicitReach explicit_reach;
   double longest_stable = 0;
   int still_stable = 0;          ///< explicit steps for which that holds
+  int failures = 0;              ///< rejected steps since the last one accepted
   int pausing = 0;               ///< steps that still end on knots,
   int patience = FEWEST_PAUSES;  ///< and how many shall after the next failure
   bool retakes = false;    ///< this step aims at an event: it must not be stretched to land on a jump of the inputs
