@@ -184,7 +184,7 @@ def _score(given: argparse.Namespace) -> int:
     if given.csv:
         result.cases.to_csv(given.csv)
     if given.json:
-        given.json.write_text(json.dumps(result.to_dict(), indent=1, allow_nan=True) + "\n", encoding="utf-8")
+        given.json.write_text(json.dumps(result.to_dict(), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return 0
 
 

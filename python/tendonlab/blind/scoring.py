@@ -56,10 +56,11 @@ class Score:
         return "\n\n".join(["\n".join(lines), *blocks])
 
     def to_dict(self) -> dict[str, object]:
-        """Plain types: summary and rows."""
+        """Plain types: summary and rows; null where there is nothing to count."""
         rows = json.loads(self.cases.reset_index().to_json(orient="records"))
-        parts = {str(name): dict(column) for name, column in self.parts.items()}
-        return {"format": "tendonlab-score/1", "summary": self.summary, "parts": parts, "cases": rows}
+        summary = json.loads(pd.Series(self.summary, dtype=float).to_json(double_precision=15))
+        parts = json.loads(self.parts.to_json(double_precision=15))
+        return {"format": "tendonlab-score/1", "summary": summary, "parts": parts, "cases": rows}
 
 
 def score(sealed: Path | str, reports: Path | str) -> Score:

@@ -119,7 +119,8 @@ class Dataset(EqualByFields):
         }
 
     def __repr__(self) -> str:
-        size = f"{len(self.train)} experiments to fit, {len(self.test)} held out"
+        fit = "1 experiment" if len(self.train) == 1 else f"{len(self.train)} experiments"
+        size = f"{fit} to fit, {len(self.test)} held out"
         return f"Dataset({self.name!r}: {self.kind}, {self.axis}; {size})"
 
     def _repr_html_(self) -> str:
