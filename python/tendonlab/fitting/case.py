@@ -23,7 +23,7 @@ TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 ATTEMPTS = 30  # of the stepper a sample: a candidate that needs more is stiffer than anything these data could show
 STIFFER = 10  # times the attempts of the simulator itself, where that is more; with derivatives it may need four times
 PATIENT = 300_000  # attempts that no simulator needs in an experiment, unless it is hopeless
-NUMERICS_SHARE = 0.1  # of the sensors' noise that the simulator's own error may reach
+NUMERICS_SHARE = 0.05  # of the sensors' noise that the simulator's own error may reach
 TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; and the share of the noise at most then
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
@@ -247,7 +247,7 @@ def _judged(ready: Prepared, experiment: Experiment) -> Prepared:
 
 
 def fine_enough(case: Case, noise: np.ndarray) -> Case:
-    """The case with the loosest tolerance at which the simulator's own error stays below a tenth of `noise`, of each
+    """The case with the loosest tolerance at which the simulator's own error stays below a twentieth of `noise`, of each
     output; or below half of it in an experiment where finer steps would not lessen the error, as where a part just
     comes to rest or just does not. Where none is fine enough, as beside a contact that falls to either side, the
     loosest that errs little more than the best one."""
