@@ -247,9 +247,9 @@ def _judged(ready: Prepared, experiment: Experiment) -> Prepared:
 
 
 def fine_enough(case: Case, noise: np.ndarray) -> Case:
-    """The case with the loosest tolerance at which the simulator's own error stays below a twentieth of `noise`, of each
-    output; or below half of it in an experiment where finer steps would not lessen the error, as where a part just
-    comes to rest or just does not. Where none is fine enough, as beside a contact that falls to either side, the
+    """The case with the loosest tolerance at which the simulator's own error stays below a twentieth of `noise`, of
+    each output; or below half of it in an experiment where finer steps would not lessen the error, as where a part
+    just comes to rest or just does not. Where none is fine enough, as beside a contact that falls to either side, the
     loosest that errs little more than the best one."""
     reference, best = _finest(case)
 

@@ -63,8 +63,8 @@ def identify(
     kept. Each is led by fits under falling noise, and runs that it leaves in a wrong initial state start again.
     An added effect that is gone at the end of its fit starts again, larger.
     `tolerance`: relative error of a step of the simulation; default: the loosest at which the simulator's own
-    error stays below a twentieth of the sensors' noise, where the fit starts and where it ends. Ctrl-C keeps the best so
-    far, `converged` False.
+    error stays below a twentieth of the sensors' noise, where the fit starts and where it ends. Ctrl-C keeps the best
+    so far, `converged` False.
     Raises DatasetError if a signal that the system needs was not measured, ParameterError for an unknown effect or a
     duplicate name, NumericalError if no start can be simulated. Source: S2 sec. 4."""
     require_dataset(dataset)
