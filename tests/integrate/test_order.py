@@ -79,6 +79,38 @@ def test_few_attempts_are_rejected():
         assert done.rejected < 0.3 * done.attempts + 20
 
 
+def test_few_attempts_are_rejected_before_a_breakaway():
+    """The steps that the error allows grow shorter one by one: the stepper foresees the next."""
+    for tolerance in (1e-4, 1e-5, 1e-6):
+        done = run(CASES["bristle"][0], T, 1.2 * T, tolerance=tolerance)
+        assert done.rejected < 0.15 * done.attempts
+
+
+def test_few_attempts_are_rejected_where_a_stiff_damper_settles():
+    """At each corner of the command the error hardly falls with the step, until the step resolves how the cable
+    settles."""
+    system = pair(("motor:viscous", "joint:viscous"), motor_viscous=2e-4, joint_viscous=0.02, cable_damping=50.0)
+    corners = np.linspace(0.0, 2.0, 201)
+    command = 0.005 * np.cumsum(np.random.default_rng(0).standard_normal(len(corners)))
+    done = run(system, corners, command, kind="linear", tolerance=1e-6)
+    assert done.rejected < 0.4 * done.attempts
+
+
+def test_a_reversal_costs_the_force_of_a_stiff_bristle_no_accuracy():
+    """At any tolerance: whether a step passes the reversal by much or by little is chance. (Above 1e-4 the force inside
+    the long step before the reversal may be off by 30 tolerances.)"""
+    samples = np.linspace(0.0, 1.0, 1001)
+    tolerances = 10.0 ** -np.arange(4.0, 7.0, 0.25)
+
+    def force(tolerance):
+        done = run(CASES["bristle"][0], samples, 2.0 * np.sin(2 * np.pi * samples), tolerance=tolerance, ports=True)
+        return done.ports["joint"][3]
+
+    best = force(1e-12)
+    errors = np.array([relative(force(tolerance), best) for tolerance in tolerances])
+    assert np.all(errors < 3.0 * tolerances), errors / tolerances
+
+
 def test_few_attempts_are_rejected_where_noise_bends_a_smooth_input():
     """The curvature of parabolas with given means jumps at every sample: steps end there rather than fail beyond."""
     time = np.linspace(0.0, 10.0, 1001)

@@ -87,6 +87,7 @@ class Simulation {
     arrive();
   }
   bool done() const { return !(t < end); }
+  /// What to try next.
   Attempt plan(Trajectory& trajectory) {
     if (++trajectory.attempts > settings.max_attempts)
       throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,

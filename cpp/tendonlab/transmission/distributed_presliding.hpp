@@ -18,12 +18,10 @@ struct DistributedPresliding {
   static constexpr std::string_view
       name = "distributed_presliding",
       noun = "distributed presliding friction", source = "S3 sec. 2, S4 play operator, in torque",
-      equation =
-          "(1 - a) tau + a y, y += s d, s dm = d + w (1 - exp(-d/rho)), w = g - s (m - "
-          "y)",
+      equation = "(1 - a) tau + a y, y += s d, s dm = d + w (1 - exp(-d/rho)), w = g - s (m - y)",
       summary =
-          "presliding spread along the cable: the output y is held until the friction of "
-          "the whole sheath has turned over; m: output without dry friction, s: its sense";
+          "presliding spread along the cable: the output y is held until the friction of the whole sheath has turned "
+          "over (m: output without dry friction; s: sense in which m changes)";
   static constexpr unsigned roles = role::signal | role::refines, sees = sees_nothing;
   template <class S>
   using Signal = TransmittedEffort<S>;

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from tendonlab.report.diagnosis import plain
+
 from .runner import REPORT, VERDICTS, sha256
 
 BINS = (0.0, 0.5, 1.0, 2.0, 4.0, np.inf)  # gap/noise
@@ -58,9 +60,9 @@ class Score:
     def to_dict(self) -> dict[str, object]:
         """Plain types: summary and rows; null where there is nothing to count."""
         rows = json.loads(self.cases.reset_index().to_json(orient="records"))
-        summary = json.loads(pd.Series(self.summary, dtype=float).to_json(double_precision=15))
-        parts = json.loads(self.parts.to_json(double_precision=15))
-        return {"format": "tendonlab-score/1", "summary": summary, "parts": parts, "cases": rows}
+        parts = {str(name): dict(column) for name, column in self.parts.items()}
+        found: dict[str, object] = plain({"summary": self.summary, "parts": parts, "cases": rows})
+        return {"format": "tendonlab-score/1", **found}
 
 
 def score(sealed: Path | str, reports: Path | str) -> Score:
