@@ -23,13 +23,17 @@ from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD
 from tendonlab.fitting.problem import Fitter
+from tendonlab.simulation.catalog import LEVEL, SIGNAL
 from tendonlab.simulation.prepare import Replay
 
 
 def trial(
     effect: str, gain: float, *, left_out: float = 100.0, doubt: float = 0.0, lost: float = 0.0, **fitted: Any
 ) -> Any:
-    return Trial(effect, SimpleNamespace(**fitted), gain, left_out, doubt, lost)  # type: ignore[arg-type]
+    """A trial of stated gains; an effect whose name begins with "signal" acts on a signal."""
+    info = SimpleNamespace(effect=lambda name: SimpleNamespace(roles=SIGNAL if name.startswith("signal") else LEVEL))
+    model = SimpleNamespace(system=SimpleNamespace(info=info), **fitted)
+    return Trial(effect, model, gain, left_out, doubt, lost)  # type: ignore[arg-type]
 
 
 INJECTION = Replay("injection")
@@ -64,6 +68,24 @@ def test_what_the_best_model_leaves_heats_the_odds(nominal: Fitted, square: floa
     trials = [trial("a", 60.0, whitened_square=square), trial("b", 40.0, whitened_square=square + 5.0)]
     found = Round.of(nominal, [], trials, established={"a", "b"}, bar=DETECT, accepted=trials[0], failed={}).probability
     assert np.log(found["a"] / found["b"]) == pytest.approx(20.0 / temperature)
+
+
+def test_far_above_the_floor_the_shape_of_a_law_may_err_but_not_that_of_a_bias(nominal: Fitted) -> None:
+    """Of 10 000 nats, 50 are half of what another form of friction may cost; a bias has no other form."""
+    gains = {"a": 10_000.0, "signal": 9_992.0, "b": 9_950.0}
+    trials = [trial(effect, gain, whitened_square=1.0) for effect, gain in gains.items()]
+    found = Round.of(nominal, [], trials, established=set(gains), bar=DETECT, accepted=trials[0], failed={}).probability
+    assert np.log(found["a"] / found["b"]) == pytest.approx(50.0 / 100.0)
+    assert np.log(found["a"] / found["signal"]) == pytest.approx(8.0 / 4.0)
+
+
+def test_where_a_bias_leads_no_shape_errs(nominal: Fitted) -> None:
+    """Friction of another form would have to look like a bias to 8 nats of 10 000."""
+    trials = [trial("signal", 10_000.0, whitened_square=1.0), trial("a", 9_992.0, whitened_square=1.0)]
+    found = Round.of(
+        nominal, [], trials, established={"a", "signal"}, bar=DETECT, accepted=trials[0], failed={}
+    ).probability
+    assert np.log(found["signal"] / found["a"]) == pytest.approx(8.0 / 4.0)
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,11 @@ class Trial:
         """Parameters of the effect."""
         return len(self.fitted.system.info.effect(self.effect).parameters)
 
+    @property
+    def has_shape(self) -> bool:
+        """Whether the law may have another form on the rig: friction has, a bias or a delay has not."""
+        return not self.fitted.system.info.effect(self.effect).roles & SIGNAL
+
 
 def is_nothing(effect: str, fitted: Fitted) -> bool:
     """Whether every amplitude of the effect may be 0 by its own interval. What it gains is then no trace of the effect,
@@ -161,11 +166,10 @@ def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> b
 
 
 def _is_friction_elsewhere(base: Fitted, trial: Trial) -> bool:
-    """Whether the model has the law of the trial's effect in another element already, where that is friction: a bias or
-    a delay of another sensor has no shape that could err."""
+    """Whether the model has the law of the trial's effect in another element already, where its shape could err."""
     law = trial.effect.split(":")[-1]
     there = any(name.split(":")[-1] == law for name in base.added)
-    return there and not trial.fitted.system.info.effect(trial.effect).roles & SIGNAL
+    return there and trial.has_shape
 
 
 def removes_little(base: Fitted, trial: Trial) -> bool:
