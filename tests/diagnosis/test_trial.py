@@ -9,14 +9,15 @@ import pytest
 import tendonlab as tl
 from tendonlab.diagnosis.search.contest import _reliever
 from tendonlab.diagnosis.search.trial import Trial, is_no_shape
+from tendonlab.simulation.catalog import LEVEL
 
 
-def believed(strain: float, **more: Any) -> Any:
+def believed(strain: float, *, roles: int = LEVEL, **more: Any) -> Any:
     """A model with one stated parameter, `strain` sd from what is believed of it, and one effect."""
     free = (SimpleNamespace(name="inertia", mean=1.0, sd=0.1), SimpleNamespace(name="size", mean=0.0, sd=3.0))
     purposes = {"inertia": "structure", "size": "amplitude"}
     info = SimpleNamespace(
-        effect=lambda name: SimpleNamespace(parameters=("size",)),
+        effect=lambda name: SimpleNamespace(parameters=("size",), roles=roles),
         parameter=lambda name: SimpleNamespace(purpose=purposes[name]),
     )
     made = SimpleNamespace(
@@ -43,6 +44,13 @@ def test_an_effect_that_gains_may_be_nothing(interval: tuple[float, float], noth
     assert Trial.of("a", fitted, believed(0.0)).is_nothing is nothing
 
 
+def test_a_law_that_acts_on_a_signal_has_no_shape() -> None:
+    info = tl.system_info("two_inertia")
+    for effect, has_shape in (("sensor.motor_angle:bias", False), ("load:offset", False), ("joint:stribeck", True)):
+        fitted = believed(0.0, roles=info.effect(effect).roles)
+        assert Trial.of("a", fitted, believed(0.0)).has_shape is has_shape
+
+
 @pytest.mark.parametrize(("mean_square", "relieved", "found"), [(1.1, 40.0, "b"), (1.1, 20.0, None), (9.0, 40.0, None)])
 def test_what_relieves_the_beliefs_takes_over_near_the_floor(
     mean_square: float, relieved: float, found: str | None
@@ -57,12 +65,12 @@ def test_what_relieves_the_beliefs_takes_over_near_the_floor(
 def test_friction_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
     """However little is left: Stribeck friction of a joint whose shape is not the library's looks like the motor's. A
     bias has no shape."""
-    info = tl.system_info("two_inertia")
 
     def needed(effect: str, gain: float, beside: str) -> bool:
         base: Any = SimpleNamespace(mean_square=3.0, added=(beside,))
-        fitted: Any = SimpleNamespace(mean_square=1.1, system=SimpleNamespace(info=info))
-        return is_no_shape(base, [Trial(effect, fitted, gain, gain, 0.0)], 10_000.0)
+        fitted: Any = SimpleNamespace(mean_square=1.1)
+        friction = not effect.startswith("sensor")
+        return is_no_shape(base, [Trial(effect, fitted, gain, gain, 0.0, has_shape=friction)], 10_000.0)
 
     assert not needed("motor:stribeck", 900.0, "joint:stribeck")
     assert needed("motor:stribeck", 1100.0, "joint:stribeck")

@@ -27,7 +27,8 @@ class Trial:
     """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain, `lost`
     what experiments that are foretold worse lose, as a share of what the others gain, `relieved` what the beliefs gain:
     they count as one more experiment, where they suit the model better; `is_nothing`: whether the effect may be 0 by
-    its own interval although it gains."""
+    its own interval although it gains; `has_shape`: whether its law may have another form on the rig, as friction has
+    and a bias or a delay has not."""
 
     effect: str
     fitted: Fitted
@@ -37,6 +38,7 @@ class Trial:
     lost: float = 0.0
     relieved: float = 0.0
     is_nothing: bool = False
+    has_shape: bool = True
 
     @classmethod
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
@@ -49,17 +51,13 @@ class Trial:
         gains = np.append(gains, relieved) if relieved > 0.0 else gains
         lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
         nothing = evidence > DETECT.evidence and is_nothing(effect, fitted)
-        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost, relieved, nothing)
+        has_shape = not fitted.system.info.effect(effect).roles & SIGNAL
+        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost, relieved, nothing, has_shape)
 
     @property
     def num_parameters(self) -> int:
         """Parameters of the effect."""
         return len(self.fitted.system.info.effect(self.effect).parameters)
-
-    @property
-    def has_shape(self) -> bool:
-        """Whether the law may have another form on the rig: friction has, a bias or a delay has not."""
-        return not self.fitted.system.info.effect(self.effect).roles & SIGNAL
 
 
 def is_nothing(effect: str, fitted: Fitted) -> bool:
