@@ -1,4 +1,4 @@
-"""The odds of effects: evidence over a temperature, which grows with what no model explains and where shapes may err."""
+"""The odds of effects: evidence over a temperature, which grows with what no model explains or where shapes err."""
 
 from types import SimpleNamespace
 from typing import Any
