@@ -34,8 +34,9 @@ EXPLAINED_FAR = 0.85  # the same where they leave twice `FAR`: right effects rem
 WELL_KNOWN = 2.5  # by how much less that share scatters there
 STRAINED = 8.0  # stated sd from which on tuning a parameter is not believed: 92 rigs that lack nothing needed 6 at most
 AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
-PARTLY = 0.1  # probability that an effect is there that repeats establish and that leaves something unknown: 3 of 34
-PARTLY_ASSUMED = 0.5  # the same where the floor is assumed: 12 of 25
+PARTLY = 0.2  # probability that an effect is there that repeats establish and that leaves something unknown: 6 of 27
+LARGELY = 0.5  # the same where it removes `MOST` of the held-out excess: 5 of 8; or the floor is assumed: 12 of 25
+MOST = 0.7
 SOFT, SAME_GROUP = 0.05, 0.2
 STRAINED_BESIDE = 20.0  # the same beside effects: four of 154 were strained further, and wrong or but a part
 STEEP = 5.0  # how fast strained beliefs turn the verdict
@@ -129,7 +130,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     is_whole = 1.0
     if selected:  # what explains a part only may imitate what is not known
         is_whole = weight["effect"] / (weight["effect"] + weight["unknown_effect"])
-    partly = PARTLY if levels.repeated else PARTLY_ASSUMED
+    partly = PARTLY if levels.repeated and (levels.explained or 0.0) < MOST else LARGELY
     effects, sets = marginals(rounds, there=is_whole + (1.0 - is_whole) * partly)
     groups = [group for contest in rounds if (group := _group(contest))]
     return Verdict(verdict, {k: v / total for k, v in weight.items()}, effects, sets, groups)
