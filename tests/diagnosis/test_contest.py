@@ -89,7 +89,7 @@ def test_a_further_effect_is_no_error_of_a_shape_where_it_gains_much_or_leaves_l
 EMPTY: dict[str, Any] = {  # a model without free parameters
     "free": (),
     "x": (),
-    "system": SimpleNamespace(info=SimpleNamespace(effect=lambda name: SimpleNamespace(parameters=(), roles=0))),
+    "system": SimpleNamespace(info=SimpleNamespace(effect=lambda _: SimpleNamespace(parameters=(), roles=0))),
 }
 
 

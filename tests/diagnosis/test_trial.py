@@ -8,16 +8,16 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.diagnosis.search.contest import _reliever
-from tendonlab.diagnosis.search.trial import Trial, is_no_shape
+from tendonlab.diagnosis.search.trial import Trial, has_shape, is_no_shape
 from tendonlab.simulation.catalog import LEVEL
 
 
-def believed(strain: float, *, roles: int = LEVEL, **more: Any) -> Any:
+def believed(strain: float, **more: Any) -> Any:
     """A model with one stated parameter, `strain` sd from what is believed of it, and one effect."""
     free = (SimpleNamespace(name="inertia", mean=1.0, sd=0.1), SimpleNamespace(name="size", mean=0.0, sd=3.0))
     purposes = {"inertia": "structure", "size": "amplitude"}
     info = SimpleNamespace(
-        effect=lambda name: SimpleNamespace(parameters=("size",), roles=roles),
+        effect=lambda name: SimpleNamespace(parameters=("size",), roles=LEVEL),
         parameter=lambda name: SimpleNamespace(purpose=purposes[name]),
     )
     made = SimpleNamespace(
@@ -44,11 +44,19 @@ def test_an_effect_that_gains_may_be_nothing(interval: tuple[float, float], noth
     assert Trial.of("a", fitted, believed(0.0)).is_nothing is nothing
 
 
-def test_a_law_that_acts_on_a_signal_has_no_shape() -> None:
-    info = tl.system_info("two_inertia")
-    for effect, has_shape in (("sensor.motor_angle:bias", False), ("load:offset", False), ("joint:stribeck", True)):
-        fitted = believed(0.0, roles=info.effect(effect).roles)
-        assert Trial.of("a", fitted, believed(0.0)).has_shape is has_shape
+@pytest.mark.parametrize(
+    ("kind", "effect", "shape"),
+    [
+        ("two_inertia", "sensor.motor_angle:bias", False),
+        ("two_inertia", "load:offset", False),
+        ("two_inertia", "joint:stribeck", True),
+        ("bowden_pair", "actuation:drive_inertia", False),
+        ("bowden_pair", "sheath:distributed_presliding", True),  # acts on the torque that the sheath passes on
+        ("bowden_pair", "sheath:velocity_gate", True),
+    ],
+)
+def test_what_acts_on_a_command_a_load_or_a_reading_has_no_shape(kind: str, effect: str, shape: bool) -> None:
+    assert has_shape(effect, tl.system_info(kind)) is shape
 
 
 @pytest.mark.parametrize(("mean_square", "relieved", "found"), [(1.1, 40.0, "b"), (1.1, 20.0, None), (9.0, 40.0, None)])

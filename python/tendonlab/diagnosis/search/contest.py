@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 
 import numpy as np
 
@@ -33,7 +32,7 @@ NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect,
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none was ahead by less than 0.04 of that
-# Among laws with a shape alone: others were never behind by more than 1.7 nats where they were right, 192 times.
+# Where laws have a shape: the others, where right, were behind by 1.7 nats at most, 192 times.
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
@@ -79,9 +78,8 @@ class Round:
         """The round of `trials`, best first, of which one, or none, is accepted."""
         exact = TEMPERATURE * max([1.0, min((t.fitted.whitened_square for t in trials), default=1.0)])
         there = [t for t in trials if t.effect in established]
-        shapeless = {t.effect: exact for t in there if not t.has_shape}
-        errs = [FORM * t.evidence_gain for t in there if there[0].has_shape]
-        probability = probabilities(trials, established, bar, max([exact, *errs]), shapeless)
+        of_shape = [FORM * t.evidence_gain for t in there if there[0].has_shape]
+        probability = probabilities(trials, established, bar, max([exact, *of_shape]), exact)
         return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, failed)
 
 
@@ -192,20 +190,23 @@ def probabilities(
     established: Set[str],
     bar: Bar,
     temperature: float,
-    own: Mapping[str, float] = MappingProxyType({}),
+    exact: float | None = None,
 ) -> dict[str | None, float]:
-    """Probability of each effect, and of no further effect (None): softmax of evidence over a temperature, where an
-    effect may have its `own`.
+    """Probability of each effect, and of no further effect (None): softmax of evidence over a temperature; `exact`:
+    that of established effects whose law has no shape that could err, where it is another.
 
     Raw evidence is over-confident: what an effect explains hangs on its form, and that of the rig is another. An effect
     that is not established ranks clearly behind None, and none counts more than the first one, to which it may have
     given way."""
     gains: dict[str | None, float] = {None: bar.evidence}
+    heat: dict[str | None, float] = {}
     for t in trials:
         most = trials[0].evidence_gain
         limit = most if t.effect in established else bar.evidence - UNCONFIRMED * temperature
         gains[t.effect] = min(t.evidence_gain, limit)
+        if exact is not None and t.effect in established and not t.has_shape:
+            heat[t.effect] = exact
     top = max(gains.values())
-    weights = {name: float(np.exp((g - top) / own.get(name or "", temperature))) for name, g in gains.items()}
+    weights = {name: float(np.exp((g - top) / heat.get(name, temperature))) for name, g in gains.items()}
     total = sum(weights.values())
     return {name: w / total for name, w in weights.items()}

@@ -10,7 +10,7 @@ import numpy as np
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
-from tendonlab.simulation.catalog import SIGNAL
+from tendonlab.simulation.catalog import SIGNAL, SystemInfo
 
 STEADY, LOSSES = 2.0, 5.0
 MOST = 1e9  # nats: beyond, a gain says no more
@@ -51,13 +51,20 @@ class Trial:
         gains = np.append(gains, relieved) if relieved > 0.0 else gains
         lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
         nothing = evidence > DETECT.evidence and is_nothing(effect, fitted)
-        has_shape = not fitted.system.info.effect(effect).roles & SIGNAL
-        return cls(effect, fitted, evidence, float(np.sum(gains)), doubt(gains), lost, relieved, nothing, has_shape)
+        left_out, shape = float(np.sum(gains)), has_shape(effect, fitted.system.info)
+        return cls(effect, fitted, evidence, left_out, doubt(gains), lost, relieved, nothing, shape)
 
     @property
     def num_parameters(self) -> int:
         """Parameters of the effect."""
         return len(self.fitted.system.info.effect(self.effect).parameters)
+
+
+def has_shape(effect: str, info: SystemInfo) -> bool:
+    """Whether the law of an effect may have another form on the rig. Those that act on a command, a load or a reading
+    have none; a gate or presliding that acts on what a sheath passes on has one."""
+    law = info.effect(effect)
+    return not law.roles & SIGNAL or law.element in {port.element for port in info.ports}
 
 
 def is_nothing(effect: str, fitted: Fitted) -> bool:
