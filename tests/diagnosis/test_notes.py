@@ -115,3 +115,5 @@ def test_experiments_that_the_verdict_counts_otherwise_than_foretold_are_named(t
     (warning,) = notes.allowed_more(twin_case, foretold, near, floor, twin_case.test[:2])  # type: ignore[arg-type]
     assert twin_case.experiments[twin_case.test[1]].name in warning
     assert "a gap of 1.7 noise floors. Within the uncertainty of the fit the gap can be 0" in warning
+    as_much = SimpleNamespace(residuals=[row - 1e-3 for row in told])  # less, but told as the same numbers
+    assert notes.allowed_more(twin_case, foretold, as_much, floor, twin_case.test[:2]) == []  # type: ignore[arg-type]

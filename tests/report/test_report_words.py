@@ -139,7 +139,7 @@ def test_sentence_of_each_verdict(diagnosis: Diagnosis) -> None:
     expected = {
         "effect": "An unmodelled effect explains the gap: Stribeck friction at the joint. These data cannot tell it "
         "from presliding friction at the joint. Adding it shrinks the held-out gap by 91 % (88–94 %). Probability that "
-        "this is the whole explanation: 0.93, not yet calibrated.",
+        "one of these explanations is the whole one: 0.93, not yet calibrated.",
         "no_gap": "There is no gap to explain: the simulator as it stands predicts to the noise floor. Probability of "
         "this verdict: 0.97.",
         "parameters_only": "Parameter values were off, and no missing effect can be shown: the refitted simulator errs "
@@ -212,12 +212,12 @@ def test_twins_of_a_selected_effect_are_named_and_count_with_it(with_effect: Dia
         verdict_probability={**with_effect.verdict_probability, "effect": 0.98},
     )
     assert "cannot tell delay of the joint angle sensor from delay of the actuator." in tied.sentence
-    assert "explanation: 0.95" in tied.sentence
+    assert "is the whole one: 0.95" in tied.sentence
 
 
 def test_the_sentence_is_never_surer_than_its_verdict(with_effect: Diagnosis) -> None:
     doubt = {"data_fault": 0.0, "no_gap": 0.0, "parameters_only": 0.0, "effect": 0.7, "unknown_effect": 0.3}
-    assert "explanation: 0.70" in replace(with_effect, verdict_probability=doubt).sentence  # its set alone: 0.93
+    assert "is the whole one: 0.70" in replace(with_effect, verdict_probability=doubt).sentence  # its set alone: 0.93
 
 
 def test_an_effect_that_does_not_help_is_not_said_to_shrink_the_gap(with_effect: Diagnosis) -> None:

@@ -25,7 +25,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         "effect": _effect,
         "unknown_effect": _unknown,
     }[diagnosis.verdict]
-    claim = "that this is the whole explanation" if diagnosis.verdict == "effect" else "of this verdict"
+    claim = _claim(diagnosis) if diagnosis.verdict == "effect" else "of this verdict"
     state = "" if diagnosis.calibrated else ", not yet calibrated"
     return f"{tell(diagnosis)} Probability {claim}: {probability(certainty(diagnosis))}{state}."
 
@@ -42,6 +42,13 @@ def certainty(diagnosis: Diagnosis) -> float:
     if alike:
         return min(of_verdict, sum(float(s["probability"]) for s in alike if len(s["effects"]) == len(chosen)))
     return min([of_verdict, *(finding.probability for finding in diagnosis.effects if finding.name in chosen)])
+
+
+def _claim(diagnosis: Diagnosis) -> str:
+    """What `certainty` is the probability of, where effects were selected: theirs, or that of any named beside them."""
+    if any(_twins(diagnosis, own) for own in diagnosis.selected):
+        return "that one of these explanations is the whole one"
+    return "that this is the whole explanation"
 
 
 def _twins(diagnosis: Diagnosis, chosen: str) -> list[str]:

@@ -199,11 +199,12 @@ def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, e
     as foretold."""
     found = []
     for i, before, after in zip(experiments, foretold.residuals, near.residuals, strict=True):
-        told, left = (gap(row_mean_squares(of), floor.rms) for of in (before, after))
-        if left < told and told > 1.0:
+        gaps = [gap(row_mean_squares(of), floor.rms) for of in (before, after)]
+        told, left = (f"{size:.2g}" for size in gaps)
+        if gaps[1] < gaps[0] and gaps[0] > 1.0 and told != left:
             found.append(
-                f"Held-out experiment {case.experiments[i].name}: the fitted model predicts a gap of {told:.2g} noise "
-                f"floors. Within the uncertainty of the fit the gap can be {left:.2g}, and the verdict uses that."
+                f"Held-out experiment {case.experiments[i].name}: the fitted model predicts a gap of {told} noise "
+                f"floors. Within the uncertainty of the fit the gap can be {left}, and the verdict uses that."
             )
     return found
 
