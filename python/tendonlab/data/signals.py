@@ -93,6 +93,8 @@ def _command_unit(tables: Table, info: SystemInfo, *, axis: str) -> str:
         return effort
     table = tables.table(command.name)
     written = table.text("unit", effort)
+    if written in COMMAND_UNITS:
+        return written
     try:
         if same_dimension(written, effort):
             return effort
