@@ -73,7 +73,7 @@ class Picture:
 
         with matplotlib.rc_context(FIGURE | {"svg.hashsalt": self.name}):  # the same diagnosis gives the same bytes
             self.figure.savefig(stream, dpi=160, **options)
-        self.figure.set_layout_engine("none")  # laid out once; a second save need not repeat it
+        self.figure.set_layout_engine(None)  # laid out once; a second save need not repeat it
 
 
 def embed(svg: str, png: Callable[[], bytes], *, name: str, alt: str) -> Markup:

@@ -37,6 +37,8 @@ FIGURE: Any = {  # rc settings of the figures that the report makes; axes that a
     "axes.formatter.use_mathtext": False,
     "svg.fonttype": "none",
     "text.parse_math": False,  # a dollar in a name is a dollar
+    "figure.autolayout": False,
+    "figure.constrained_layout.use": False,
 }
 
 
