@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -113,6 +113,8 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     if not scores:
         typical = {p.name: AMPLITUDES[-1] * _unit(case, p) for p in rows if p.amplitude}
         return Screened(effect, 0.0, ({**start, **typical},), 0.0, trouble)
+    if any(p.dimension == "time" for p in rows):
+        scores = _as_simulated(fitter, base, effect, scores)
     scores.sort(key=lambda s: -s.gain)
     return Screened(effect, scores[0].gain, _starts(scores, shapes[:1]), max(s.visibility for s in scores))
 
@@ -146,6 +148,13 @@ def _score(
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
     start = p.typical if p.purpose == "share" else at * unit  # a share is held at its typical value in fits
     return _Score(gain, {**values, p.name: start}, 0.5 * curvature)
+
+
+def _as_simulated(fitter: Fitter, base: Fitted, effect: str, scores: Sequence[_Score]) -> list[_Score]:
+    """The scores of a delay with the gains that their starts bring when they are simulated: where the motion
+    oscillates, a slope promises more at a delay that lies periods away from the best one."""
+    gains = expected_gains(fitter, base, effect, [s.start for s in scores])
+    return [replace(s, gain=gain) for s, gain in zip(scores, gains, strict=True)]
 
 
 def expected_gains(fitter: Fitter, base: Fitted, effect: str, tried: Sequence[dict[str, float]]) -> list[float]:
