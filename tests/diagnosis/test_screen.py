@@ -43,6 +43,23 @@ def test_fits_start_at_a_multiple_of_the_typical_shape(
     assert start["joint_stribeck_velocity"] == pytest.approx(3.0 * typical["joint_stribeck_velocity"])
 
 
+def test_a_delay_starts_where_simulations_are_best(
+    fitter: Fitter, nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the motion oscillates, a slope may promise more at a delay that is periods away."""
+    asked: list[dict[str, float]] = []
+
+    def simulated(_: Fitter, __: Fitted, ___: str, tried: list[dict[str, float]]) -> list[float]:
+        asked.extend(tried)
+        return [float(place == 1) for place, _ in enumerate(tried)]
+
+    monkeypatch.setattr(screen, "expected_gains", simulated)
+    found = screen.screen(fitter, nominal, "actuation:delay")
+    assert len(asked) == len(screen.DELAYS)
+    assert found.starts == (asked[1],)
+    assert found.gain == 1.0
+
+
 @pytest.mark.cpu(20)  # a rig is drawn here
 def test_a_long_delay_starts_near_where_it_is(tmp_path: Path) -> None:
     """Where a sheath's friction jumps, the slope at no delay tells nothing of 60 ms."""
