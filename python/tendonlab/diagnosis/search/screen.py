@@ -113,10 +113,11 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     if not scores:
         typical = {p.name: AMPLITUDES[-1] * _unit(case, p) for p in rows if p.amplitude}
         return Screened(effect, 0.0, ({**start, **typical},), 0.0, trouble)
-    if any(p.dimension == "time" for p in rows):
-        scores = _as_simulated(fitter, base, effect, scores)
     scores.sort(key=lambda s: -s.gain)
-    return Screened(effect, scores[0].gain, _starts(scores, shapes[:1]), max(s.visibility for s in scores))
+    promised = scores[0].gain
+    if any(p.dimension == "time" for p in rows):
+        scores = _best_when_simulated(fitter, base, effect, scores)
+    return Screened(effect, promised, _starts(scores, shapes[:1]), max(s.visibility for s in scores))
 
 
 def _whole(case: Case, base: Fitted, effect: str, rows: Sequence[ParameterInfo]) -> Screened:
@@ -150,11 +151,11 @@ def _score(
     return _Score(gain, {**values, p.name: start}, 0.5 * curvature)
 
 
-def _as_simulated(fitter: Fitter, base: Fitted, effect: str, scores: Sequence[_Score]) -> list[_Score]:
-    """The scores of a delay with the gains that their starts bring when they are simulated: where the motion
-    oscillates, a slope promises more at a delay that lies periods away from the best one."""
+def _best_when_simulated(fitter: Fitter, base: Fitted, effect: str, scores: Sequence[_Score]) -> list[_Score]:
+    """The scores of a delay, that first whose start gains most when it is simulated: where the motion oscillates, a
+    slope promises most at a delay that lies periods away from the best one."""
     gains = expected_gains(fitter, base, effect, [s.start for s in scores])
-    return [replace(s, gain=gain) for s, gain in zip(scores, gains, strict=True)]
+    return [scores[i] for i in sorted(range(len(scores)), key=lambda i: -gains[i])]
 
 
 def expected_gains(fitter: Fitter, base: Fitted, effect: str, tried: Sequence[dict[str, float]]) -> list[float]:
