@@ -7,13 +7,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tendonlab.checking.finding import Finding
-from tendonlab.checking.lags import Lags
+from tendonlab.checking.lags import RESOLVED, Lags
 
 SURE = 5.0  # sd that make a lag which all experiments share
 APART = 6.0  # sd, of the lag and of its scatter among experiments, by which one experiment lags the others
 LEAST = 1.5  # samples by which an experiment must lag the others
 LEAST_SHARED = 0.25  # of a sample, of a lag that all share
-RESOLVED = 0.25  # of a sample: no lag is known better
 MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
 SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others, or they and a scan
 SCANNED, ALONE = 20.0, 0.1  # nats of a scan that make an experiment late, and share of them that no other may reach

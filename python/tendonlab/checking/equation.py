@@ -105,8 +105,7 @@ class Equation:
         )
         groups: dict[str, list[int]] = {}
         for i in np.unique(logs.run).tolist():
-            under = self.conditions[i]
-            groups.setdefault(str(i) if alone else repr((under.values, sorted(under.fixed))), []).append(i)
+            groups.setdefault(str(i) if alone else self.conditions[i].key, []).append(i)
         return list(groups.values())
 
 
@@ -119,6 +118,11 @@ class Conditions:
     active: list[bool]
     fixed: frozenset[int]
     shape: np.ndarray
+
+    @cached_property
+    def key(self) -> str:
+        """The same for experiments under the same conditions."""
+        return repr((self.values, sorted(self.fixed)))
 
     @classmethod
     def of(cls, equation: Equation, experiment: Experiment) -> Conditions:

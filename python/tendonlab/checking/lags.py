@@ -19,7 +19,8 @@ FAR = 3  # steps from the common lag at which only another clock is likely to su
 OWN = 3.0  # nats by which a lag of its own must suit an experiment better than the common one, to start the search
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
 BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
-MOST_ROUNDS, CLOSE = 40, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the sd
+RESOLVED = 0.25  # of a sample: no lag is known better
+MOST_ROUNDS, CLOSE = 40, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the error
 ROUNDS = 12  # of a robust regression
 MENDED = 0.96  # share of what an equation leaves of an experiment (rms) that its own lags must at most leave
 
@@ -61,7 +62,7 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         steps = _steps(at, fit, own, belief, logs.run[kept], share, num=late.shape[1])
         step, sd = (part[: len(channels)] for part in steps)
         late = late + np.clip(step, -logs.step, logs.step)
-        if np.all(np.abs(step) < CLOSE * sd):
+        if np.all(np.abs(step) < CLOSE * np.hypot(sd, RESOLVED * logs.step)):
             break
     weight = _weights(slopes / (fit.level * at.size)[:, None], logs.run[kept], late.shape[1])
     gain = _gain(equation, logs, kept, late, share, fit)
