@@ -81,3 +81,24 @@ def test_an_effect_leads_the_contest_for_its_own_place(tmp_path: Path) -> None:
         for place in contest_each_place(fitter, whole, {}, shop):
             assert place.round.screened[0].effect == place.holder.effect
             assert place.holder.evidence_gain > 100.0
+
+
+def late(rig: tl.Dataset, name: str, seconds: float) -> tl.Dataset:
+    """The logs with the angle of one experiment stamped late."""
+    file = rig.path / f"{name}.csv"
+    run = pd.read_csv(file)
+    run["q"] = np.interp(run["t"] - seconds, run["t"], run["q"])
+    run.to_csv(file, index=False)
+    return tl.load(rig.path)
+
+
+@pytest.mark.cpu(120)
+def test_a_late_experiment_that_an_effect_hides_is_told(tmp_path: Path) -> None:
+    lacking = RIG.with_effects({"joint:load_dependence": {"load_dependence": 0.2}})
+    rig = late(write(tmp_path, lacking, seed=3), "slow", 0.03)
+    assert not tl.check(rig).blocks
+    why = tl.diagnose(rig, progress=False)
+    assert why.verdict == "data_fault"
+    (found,) = [f for f in why.data if f["blocks"]]
+    assert found["experiment"] == "slow"
+    assert found["seconds"] == pytest.approx(0.03, abs=0.005)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tendonlab.checking.clocks import clock_findings
@@ -16,7 +18,7 @@ from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.checking.tensions import pushing_cables
-from tendonlab.data import Dataset, require_dataset, simulator_of
+from tendonlab.data import Dataset, NominalParameter, require_dataset, simulator_of
 from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
@@ -54,12 +56,28 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     return Check(dataset=dataset.name, findings=tuple(found), notes=tuple(notes))
 
 
+@with_one_blas_thread
+def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
+    """The experiments alone whose outputs lag the inputs otherwise than in the others, by the equation of `system`: a
+    large effect hides a lag, and a simulator that has the effect shows the lag. How large the effect is, the late
+    experiment may have misled: that stays free."""
+    if system.info.steady or (logs := read_logs(dataset, system.info)) is None:
+        return ()
+    own = [name for effect in system.effects for name in system.info.effect(effect).parameters]
+    added = {name: NominalParameter(value=system.parameters[name]) for name in own if name in system.parameters}
+    free = replace(dataset, parameters={**added, **dataset.parameters})
+    return tuple(finding for finding in _clocks(Equation(free, system), logs)[0] if finding.blocks)
+
+
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
-    dataset = equation.dataset
     factors = owned(wrong_factors(equation, logs), equation, logs, marked) or odd_channels(equation, logs, marked)
     if factors:  # lags are judged once these are corrected
         return factors, []
-    late = lags(equation, logs)
+    return _clocks(equation, logs)
+
+
+def _clocks(equation: Equation, logs: Logs) -> tuple[list[Finding], list[str]]:
+    dataset, late = equation.dataset, lags(equation, logs)
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]
     step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))
