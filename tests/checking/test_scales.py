@@ -42,13 +42,22 @@ def test_a_factor_mends_an_equation_or_relieves_beliefs_and_spoils_nothing(
 
 
 @pytest.mark.parametrize(
-    ("level", "strain", "convinces"),
-    [([0.14, 0.69], 2.1, False), ([0.14, 0.69], 1.9, True), ([0.08, 0.69], 5.0, True)],
+    ("value", "level", "strain", "convinces"),
+    [
+        (3.0, [0.14, 0.69], 2.1, False),
+        (3.0, [0.14, 0.69], 1.9, True),
+        (3.0, [0.08, 0.69], 5.0, True),
+        (0.01745, [0.38, 0.34], 2.4, True),  # degrees, from far away, near balance
+        (0.0168, [0.38, 0.34], 2.4, False),  # which degrees are not
+        (0.01745, [0.38, 0.69], 2.4, False),
+        (-1.0, [0.38, 0.34], 2.4, False),
+    ],
 )
-def test_corrected_logs_balance_somewhere_or_suit_the_beliefs(
-    level: list[float], strain: float, convinces: bool
+def test_corrected_logs_balance_somewhere_or_suit_the_beliefs_or_another_unit(
+    value: float, level: list[float], strain: float, convinces: bool
 ) -> None:
-    assert _convinces(left(level, strain), np.array([True, True])) == convinces
+    before, told = left([20.0, 17.0], 6.0), np.array([True, True])
+    assert _convinces(Factor(("joint_angle",), value, left(level, strain)), before, told) == convinces
 
 
 @pytest.mark.parametrize(

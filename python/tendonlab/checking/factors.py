@@ -5,24 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from tendonlab.checking.conversions import nearest
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.logs import TIME
 from tendonlab.checking.scales import BLOCKING, Factor
 from tendonlab.data import Dataset
 from tendonlab.report.numbers import number
 
-# Ratio, how it and its inverse are written, and what confuses by it.
-KNOWN = (
-    (1e6, "a million", "1/1000000", "a prefix such as micro"),
-    (1000.0, "1000", "1/1000", "a prefix such as milli"),
-    (100.0, "100", "1/100", "a prefix such as centi"),
-    (360.0, "360", "1/360", "turns and degrees"),
-    (180.0 / math.pi, "180/pi", "pi/180", "degrees and radians"),
-    (60.0, "60", "1/60", "minutes and seconds"),
-    (9.81, "9.81", "1/9.81", "kilogram-force and newton"),
-    (2.0 * math.pi, "2 pi", "1/(2 pi)", "turns and radians"),
-    (2.0, "2", "1/2", "a diameter and a radius, or both sides and one"),
-)
 NEAR = 0.12  # relative distance within which a known ratio is named
 
 
@@ -74,7 +63,5 @@ def _scale_words(name: str, value: float, alternatives: Sequence[str], dataset: 
 
 def _hint(value: float) -> str:
     """The confusion that a factor suggests: the nearest of those that are known."""
-    labels = [(ratio, label, words) for ratio, label, _, words in KNOWN]
-    labels += [(1.0 / ratio, inverse, words) for ratio, _, inverse, words in KNOWN]
-    ratio, label, words = min(labels, key=lambda known: abs(math.log(value / known[0])))
-    return f" (near {label}: {words}?)" if abs(math.log(value / ratio)) < NEAR else ""
+    near = nearest(value)
+    return f" (near {near.label}: {near.words}?)" if abs(math.log(value / near.ratio)) < NEAR else ""

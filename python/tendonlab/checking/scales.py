@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tendonlab.checking.conversions import nearest
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import TIME, VELOCITIES, Logs
 from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown
@@ -31,6 +32,7 @@ NEARLY = 0.4  # level to which a factor must mend an equation to be believed for
 LATEST, MOST_LAGS = 0.05, 8  # s: lags of outputs that are tried before a factor is told, at most so many
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
+EXACT = 0.02  # relative distance at which a factor is the ratio of two units
 MERE = 0.9  # share of the gain of a negative factor at which a mere sign is believed,
 HEALED = 0.1  # and share of the level of an equation that such a sign leaves
 AWAY = RATIO**-6  # of a channel that is explained away
@@ -78,7 +80,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
         return []
-    if not _helps(best.fit, base, told) or not _convinces(best.fit, told) or _suits_late(equation, logs, best, share):
+    if not _helps(best.fit, base, told) or not _convinces(best, base, told) or _suits_late(equation, logs, best, share):
         return []
     if _only_turns(equation, best.signals):  # of any size: its sign must be what the beliefs ask for
         if best.fit.strain > CREDIBLE:
@@ -133,9 +135,14 @@ def _helps(fit: Fit, base: Fit, told: np.ndarray) -> bool:
     return (mends or relieves) and not np.any(fit.level > np.fmax(EXPLAINED, SPOILT * base.level))
 
 
-def _convinces(fit: Fit, told: np.ndarray) -> bool:
-    """Whether the logs, once corrected, suit the simulator anywhere: an equation balances, or the beliefs suit it."""
-    return fit.strain < STRAINED or bool(np.any(fit.level[told] < BALANCED))
+def _convinces(factor: Factor, base: Fit, told: np.ndarray) -> bool:
+    """Whether the logs, once corrected, suit the simulator anywhere: an equation balances, or the beliefs suit it. Or
+    the factor is the ratio of two units, and nears balance where the logs as they are were far from any."""
+    fit = factor.fit
+    if fit.strain < STRAINED or np.any(fit.level[told] < BALANCED):
+        return True
+    exact = factor.value > 0 and abs(np.log(factor.value / nearest(factor.value).ratio)) < EXACT
+    return bool(exact and _heals(fit, base, told) and np.all(fit.level[told] < NEARLY))
 
 
 def _suits_late(equation: Equation, logs: Logs, factor: Factor, share: np.ndarray) -> bool:
