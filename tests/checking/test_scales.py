@@ -48,7 +48,7 @@ def test_a_factor_mends_an_equation_or_relieves_beliefs_and_spoils_nothing(
         (3.0, [0.14, 0.69], 1.9, True),
         (3.0, [0.08, 0.69], 5.0, True),
         (0.01745, [0.38, 0.34], 2.4, True),  # degrees, from far away, near balance
-        (0.0168, [0.38, 0.34], 2.4, False),  # which degrees are not
+        (0.0185, [0.38, 0.34], 2.4, False),  # which no unit explains
         (0.01745, [0.38, 0.69], 2.4, False),
         (-1.0, [0.38, 0.34], 2.4, False),
     ],
