@@ -72,6 +72,19 @@ def test_friction_that_moves_next_to_nothing_differs_by_no_large_factor(twin_cas
     assert estimate(twin_case, seen, twin_case.train).tau < 0.01
 
 
+def test_an_assumed_floor_is_that_of_the_experiments_that_models_are_judged_by(twin_case: Any) -> None:
+    """A release in training that a little friction moves far must not hide an error in a slow held-out experiment."""
+    case = replace(twin_case, experiments=tuple(replace(e, repeat=None) for e in twin_case.experiments))
+    seen = []
+    for i, ready in enumerate(case.prepared):
+        noise = np.broadcast_to(case.noise[:, None], ready.measured.shape)
+        moved = (50.0 if i in case.test else 5000.0) * noise[None]  # by a friction twice as large
+        seen.append(Sensitivities(np.array(noise), moved, moved[:0]))
+    floor = estimate(case, seen, case.train)
+    assert not floor.repeated
+    assert floor.rms[case.measured] == pytest.approx(np.sqrt(2.0) * case.noise[case.measured])
+
+
 @pytest.mark.parametrize(
     ("kind", "phase", "repeats"),
     [

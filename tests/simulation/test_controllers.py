@@ -22,14 +22,15 @@ def push(t: np.ndarray | float) -> Any:
     return 0.7 * np.cos(2.0 * t)
 
 
-def closed(frame: dict[str, np.ndarray], **of: Any) -> np.ndarray:
-    """The joint under this controller, at rest at 0.1 rad in the beginning."""
+def closed(frame: dict[str, np.ndarray], *, since: float = 0.0, held: bool = False, **of: Any) -> np.ndarray:
+    """The joint under this controller, at rest at 0.1 rad in the beginning, with a clock that began `since` before."""
     loop = Controller(**{"kind": "pd", "kp": KP, "kd": KD, "measured": "joint_angle", "reference": "wanted", **of})
     values = {"inertia": INERTIA, "gravity_torque": GRAVITY, "torque_constant": GAIN, "viscous": VISCOUS}
     rig = tl.System(kind="rigid_joint", parameters=values, effects=("joint:viscous",), controller=loop)
-    data = pd.DataFrame(frame, index=pd.Index(TIME, name="t"))
+    data = pd.DataFrame(frame, index=pd.Index(since + TIME, name="t"))
     start = {"joint_angle": 0.1, "joint_velocity": 0.0}
-    found = rig.simulate(Experiment(name="run", data=data, initial=start), replay="controller", tolerance=1e-9)
+    run = Experiment(name="run", data=data, initial=start, holds={"wanted": held})
+    found = rig.simulate(run, replay="controller", tolerance=1e-9)
     return found["joint_angle"].to_numpy()
 
 
@@ -69,3 +70,11 @@ def test_a_command_is_limited_and_a_disturbance_added_after_the_limit() -> None:
 
     given = {"derivative_on": "measurement", "limit": 1.0, "disturbance": "push"}
     np.testing.assert_allclose(closed({**WANTED, "push": push(TIME)}, **given), expected(command, rtol=1e-8), atol=1e-4)
+
+
+@pytest.mark.parametrize("since", [0.0, 1.0, 415.037, 1964.0003])
+def test_a_sampled_controller_reads_the_reference_of_its_tick_whenever_its_clock_began(since: float) -> None:
+    """Stamps are rounded. A held reference that is read a tick late makes the joint lag by a sample."""
+    ticks = {"sample_time": 0.005, "derivative_on": "measurement"}
+    straight = closed(WANTED, **ticks)  # at the ticks a reference that goes straight between them has the same values
+    np.testing.assert_allclose(closed(WANTED, since=since, held=True, **ticks), straight, atol=1e-7)

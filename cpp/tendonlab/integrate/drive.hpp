@@ -78,7 +78,7 @@ class Drive : public Readings<T> {
     T y = at.position[axis], rate = at.velocity[axis];
     if (is_late(sensor_late)) std::tie(y, rate) = past.reading(T(now - sensor_late), y, rate, T(now));
     y = y + bias;
-    const T r = at_tick(loop.reference, ticked_reference, now);
+    const T r = at_tick(loop.reference, ticked_reference);
     const bool first = tick == 0;
     if (first) last_reading = y, last_reference = r;
     T u = loop.proportional * (r - y) +
@@ -86,7 +86,7 @@ class Drive : public Readings<T> {
     if (plain(u) > loop.limit) u = T(loop.limit);
     if (plain(u) < -loop.limit) u = T(-loop.limit);
     last_reading = y, last_reference = r;
-    u = u + at_tick(loop.disturbance, ticked_disturbance, now);
+    u = u + at_tick(loop.disturbance, ticked_disturbance);
     if (first) held = u;  // before the record the command has its first value
     pending.push({tick_time(tick) + shift, u});
     ++tick;
@@ -131,10 +131,12 @@ class Drive : public Readings<T> {
   static void move(const Signal& s, int& i, double by, double now) {
     while (s.holds && i + 1 < s.pieces() && s.knots[static_cast<std::size_t>(i) + 1] + by <= now) ++i;
   }
-  /// A signal at a tick of the controller's clock, which no delay moves.
-  static T at_tick(const Signal& s, int& i, double now) {
-    if (s.holds && !s.empty()) i = s.locate(now, i);
-    return s.value(T(now), i);
+  /// A signal at the present tick of the controller's clock, which no delay moves. Stamps are rounded: a value that is
+  /// held from the tick on must not come a tick late.
+  T at_tick(const Signal& s, int& i) const {
+    constexpr double rounding = 1e-3;  // of a tick
+    if (s.holds && !s.empty()) i = s.locate(tick_time(tick) + rounding * from.loop.sample_time, i);
+    return s.value(T(tick_time(tick)), i);
   }
   double tick_time(long k) const { return from.time.front() + static_cast<double>(k) * from.loop.sample_time; }
 

@@ -88,11 +88,10 @@ def _gain(
     gained = np.where(_mended(fit, without, moved.run, late.shape[1]), np.maximum(gained - np.median(gained), 0.0), 0.0)
     left = without.residual / (without.level * at.size * FREEDOM**0.5)[:, None]
     if equation.axes:
-        bent = [
-            _by_bristles(equation, moved, left, i, share) + _by_prescribed(equation, moved, left, i, share)
-            for i in range(len(gained))
-        ]
-        return np.where(gained > 0.5 * (FREEDOM + 1) * np.array(bent), gained, 0.0)
+        for i in np.flatnonzero(gained).tolist():
+            bent = _by_bristles(equation, moved, left, i, share) + _by_prescribed(equation, moved, left, i, share)
+            gained[i] *= gained[i] > 0.5 * (FREEDOM + 1) * bent
+        return np.asarray(gained)
     velocity = sliding(equation, moved, 0)
     if velocity is None:
         return gained
@@ -207,15 +206,25 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
 
 def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:
     """By how much friction in presliding lowers the surprise of an experiment, of each equation by its `share`: while a
-    motion is too small to slide, friction is a spring, and the motion seems to lead. Nothing where none of its samples
-    is judged."""
-    here, saved = logs.run == experiment, 0.0
-    for k, name in enumerate(equation.moved if here.any() else ()):
-        position, speed = logs.moving[name][:2, here]
-        for deflection in _deflections(position):
-            columns = np.column_stack([_friction(speed), deflection])
-            saved = max(saved, float(share[k]) * _saved(left[k, here], columns))
-    return saved
+    motion is too small to slide, friction is a spring, and the motion seems to lead. A tension behind a contact seems
+    to lag: each force may have friction of its own, along any motion. Nothing where no sample is judged."""
+    here = logs.run == experiment
+    if not here.any() or not equation.moved:
+        return 0.0
+    info = equation.system.info
+    axes = [logs.moving[name][:2, here] for name in equation.moved]
+    driven = [s.name for s in info.inputs if s.dimension == "angle" and s.name in logs.driving]
+    anywhere = [*axes, *(logs.driving[name][:2, here] for name in driven)]
+    forces = [
+        equation.predicted.index((s.name,)) for s in info.outputs if s.dimension == "force" and s.name in logs.others
+    ]
+
+    def saved(row: int, motion: np.ndarray) -> float:
+        columns = [np.column_stack([_friction(motion[1]), bent]) for bent in _deflections(motion[0])]
+        return max(float(share[row]) * _saved(left[row, here], each) for each in columns)
+
+    own = [max(saved(row, motion) for motion in anywhere) for row in forces]
+    return max(saved(k, motion) for k, motion in enumerate(axes)) + sum(own)
 
 
 def _by_prescribed(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:

@@ -232,8 +232,10 @@ def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:
 
 
 def _assumed(case: Case, seen: Sequence[Sensitivities], c: int) -> float:
-    """The plain floor of output c where nothing repeats: sensor noise and an assumed run-to-run friction."""
-    moved = [np.sum(np.square(RUN_TO_RUN_UNKNOWN * s.friction[:, c]), axis=0) for s in seen if len(s.friction)]
+    """The plain floor of output c in what models are judged by, where nothing repeats: sensor noise and an assumed
+    run-to-run friction. A training experiment that a little friction moves far says nothing about others."""
+    judged = [seen[i] for i in case.test or range(len(seen))]
+    moved = [np.sum(np.square(RUN_TO_RUN_UNKNOWN * s.friction[:, c]), axis=0) for s in judged if len(s.friction)]
     return float(np.sqrt(case.noise[c] ** 2 + (np.mean(np.concatenate(moved)) if moved else 0.0)))
 
 
