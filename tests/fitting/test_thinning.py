@@ -144,20 +144,40 @@ def test_a_step_of_the_torque_that_would_move_the_joint_early_or_late_is_kept(ri
     assert len(thin(rig, motor_torque=stepped)[1].time) == samples
 
 
+def servo(folder, target, **inputs):
+    """Logs of a servo that drives a pendulum, from the library's own simulator."""
+    values = {"inertia": 0.02, "torque_constant": 1.4, "resistance": 2.0, "proportional_gain": 35.0, "coulomb": 0.1}
+    values |= {"voltage_limit": 7.4, "gravity_torque": 0.5, "armature": 0.0, "angle_offset": 0.0}
+    lines = ["format = 'tendonlab-dataset/1'", "name = 'servo'", "[system]", "kind = 'servo_pendulum'"]
+    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in values.items())]
+    lines += [*(f"[signals.{name}]" for name in ("target_angle", *inputs)), "[signals.joint_angle]"]
+    lines += [f"noise_sd = {NOISE}", "[[experiments]]", "name = 'a'", "file = 'a.csv'", "split = 'train'"]
+    (folder / "dataset.toml").write_text("\n".join(lines), encoding="utf-8")
+    given = pd.DataFrame({"target_angle": target, **inputs}, index=pd.Index(TIME, name="t"))
+    angle = (
+        tl.System(kind="servo_pendulum", parameters=values, effects=("joint:coulomb",))
+        .simulate(given)["joint_angle"]
+        .to_numpy()
+    )
+    given.assign(joint_angle=angle + NOISE * RNG.normal(size=len(TIME))).to_csv(folder / "a.csv")
+    return tl.load(folder)
+
+
 @pytest.mark.parametrize(("step", "samples"), [(0.0, 401), (0.3, 4001)])
 def test_a_step_of_a_servos_target_is_kept(tmp_path, step, samples):
     """Smoothed, the drive would pull to it early, and less hard than a drive at its limit does."""
-    values = {"inertia": 0.02, "torque_constant": 1.4, "resistance": 2.0, "proportional_gain": 35.0, "coulomb": 0.1}
-    lines = ["format = 'tendonlab-dataset/1'", "name = 'servo'", "[system]", "kind = 'servo_pendulum'"]
-    lines += ["[system.parameters]", *(f"{name} = {{ value = {value} }}" for name, value in values.items())]
-    lines += ["voltage_limit = { value = 7.4 }", "gravity_torque = { value = 0.5 }", "[signals.target_angle]"]
-    lines += ["[signals.joint_angle]", f"noise_sd = {NOISE}", "[[experiments]]", "name = 'a'", "file = 'a.csv'"]
-    (tmp_path / "dataset.toml").write_text("\n".join([*lines, "split = 'train'"]), encoding="utf-8")
     target = 0.3 * np.sin(2 * np.pi * 0.5 * TIME) + step * (TIME > 2.0035)
-    angle = 0.3 * np.sin(2 * np.pi * 0.5 * TIME - 0.1) + NOISE * RNG.normal(size=len(TIME))
-    table = np.column_stack([TIME, target, angle])
-    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="t,target_angle,joint_angle", comments="")
-    assert len(thinned(tl.load(tmp_path))["a"].time) == samples
+    assert len(thinned(servo(tmp_path, target))["a"].time) == samples
+
+
+@pytest.mark.parametrize(("released", "samples"), [(2.0, 401), (2.003, 4001)])
+def test_a_release_stays_when_it_was(tmp_path, released, samples):
+    """A switch that is smoothed releases a load early; one between samples that are kept, early or late."""
+    rig = servo(tmp_path, 0.3 * np.sin(TIME), torque_enable=np.where(released > TIME + 1e-9, 1.0, 0.0))
+    few = thinned(rig)
+    assert len(few["a"].time) == samples
+    falls, thin_falls = (of.system().simulate(of["a"])["joint_angle"] for of in (rig, few))
+    assert np.abs(thin_falls - falls.loc[thin_falls.index]).loc[1.5:].max() < 0.3 * NOISE
 
 
 @pytest.mark.parametrize(("jump", "samples"), [(3.0, 401), (30.0, 4001)])

@@ -65,6 +65,7 @@ def thinned(dataset: Dataset, system: System | None = None) -> Dataset:
         smooth = {name: [local_parabolas(*of, factor) for of in records[name]] for name in noise}
         lost = max((_lost_of(e, given, factor) for e in dataset for given in _inputs_of(e, system)), default=0.0)
         kept = all(_keeps_samples(records[name], smooth[name]) for name in noise)
+        kept = kept and all(_keeps_switches(e, given, factor) for e in dataset for given in _inputs_of(e, system))
         kept = kept and lost <= most and _shifted(dataset, system, noise, factor) <= MOST_SHIFTED
         if kept and all(_keeps_motion(smooth[name], noise[name]) for name in noise):
             signals = {name: _smoothed(dataset.signals[name], noise[name], _gain(smooth[name])) for name in noise}
@@ -115,6 +116,13 @@ def _keeps_samples(records: Sequence[tuple[np.ndarray, np.ndarray]], smooth: Seq
         np.isfinite(of.values).sum() > 1 or np.isfinite(values).sum() < 2
         for (_, values), of in zip(records, smooth, strict=True)
     )
+
+
+def _keeps_switches(experiment: Experiment, given: InputInfo, factor: int) -> bool:
+    """Whether what a switch turns on or off begins at a sample that is kept: half a sample moves a release by more than
+    its sensor errs."""
+    turns = np.flatnonzero(np.diff(_column(experiment, given.name))) + 1
+    return given.dimension != "ratio" or not np.any(turns % factor)
 
 
 def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:

@@ -177,8 +177,8 @@ def is_held(experiment: Experiment, given: InputInfo) -> bool:
 
 
 def _between(experiment: Experiment, given: InputInfo) -> Callable[[np.ndarray, np.ndarray], _core.Signal]:
-    """How an input goes from sample to sample."""
-    if experiment.averaged:
+    """How an input goes from sample to sample. A switch has no mean that is smooth."""
+    if experiment.averaged and given.dimension != "ratio":
         return averaged
     if is_held(experiment, given):
         return hold
