@@ -27,7 +27,7 @@ def closed(frame: dict[str, np.ndarray], *, since: float = 0.0, held: bool = Fal
     loop = Controller(**{"kind": "pd", "kp": KP, "kd": KD, "measured": "joint_angle", "reference": "wanted", **of})
     values = {"inertia": INERTIA, "gravity_torque": GRAVITY, "torque_constant": GAIN, "viscous": VISCOUS}
     rig = tl.System(kind="rigid_joint", parameters=values, effects=("joint:viscous",), controller=loop)
-    data = pd.DataFrame(frame, index=pd.Index(since + TIME, name="t"))
+    data = pd.DataFrame(frame, index=pd.Index(np.round(since + TIME, 6), name="t"))
     start = {"joint_angle": 0.1, "joint_velocity": 0.0}
     run = Experiment(name="run", data=data, initial=start, holds={"wanted": held})
     found = rig.simulate(run, replay="controller", tolerance=1e-9)

@@ -11,6 +11,7 @@ from tendonlab.checking.logs import Logs
 from tendonlab.checking.regression import FREEDOM, Fit
 from tendonlab.checking.scales import ROUGH_SHARE, shares
 from tendonlab.checking.terms import Terms, sliding, slopes_of_lags, terms
+from tendonlab.simulation.catalog import MEMORY
 
 SAMPLES, SCANNED = 4000, 20000  # that decide, and that the scan looks at
 LONGEST, PART = 0.5, 0.25  # s, and share of the shortest experiment: lags that are looked for
@@ -64,9 +65,26 @@ def lags(equation: Equation, logs: Logs) -> Lags:
         late = late + np.clip(step, -logs.step, logs.step)
         if np.all(np.abs(step) < CLOSE * np.hypot(sd, RESOLVED * logs.step)):
             break
+    late = _with_one_clock(equation, late, sd)
     weight = _weights(slopes / (fit.level * at.size)[:, None], logs.run[kept], late.shape[1])
     gain = _gain(equation, logs, kept, late, share, fit)
     return Lags(channels, late, sd, weight, gain, scanned, float(fit.level[0]))
+
+
+def _with_one_clock(equation: Equation, late: np.ndarray, sd: np.ndarray) -> np.ndarray:
+    """The lags where friction with memory may delay forces: in a small motion a tension behind a contact lags by tens
+    of milliseconds. There an experiment delays all its forces by what it delays the one whose lag is known best."""
+    info, on = equation.system.info, equation.system.active()
+    forces = [
+        equation.measured.index(s.name) for s in info.outputs if s.dimension == "force" and s.name in equation.others
+    ]
+    if not forces or not any(acts and e.roles & MEMORY for acts, e in zip(on, info.effects, strict=True)):
+        return late
+    shared = np.median(late, axis=1)[:, None]
+    best = np.argmin(sd[forces], axis=0)
+    late = late.copy()
+    late[forces] = shared[forces] + (late - shared)[forces][best, np.arange(late.shape[1])]
+    return late
 
 
 def _gain(
@@ -90,7 +108,8 @@ def _gain(
     if equation.axes:
         for i in np.flatnonzero(gained).tolist():
             bent = _by_bristles(equation, moved, left, i, share) + _by_prescribed(equation, moved, left, i, share)
-            gained[i] *= gained[i] > 0.5 * (FREEDOM + 1) * bent
+            if gained[i] <= 0.5 * (FREEDOM + 1) * bent:
+                gained[i] = 0.0
         return np.asarray(gained)
     velocity = sliding(equation, moved, 0)
     if velocity is None:
@@ -206,25 +225,15 @@ def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray
 
 def _by_bristles(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:
     """By how much friction in presliding lowers the surprise of an experiment, of each equation by its `share`: while a
-    motion is too small to slide, friction is a spring, and the motion seems to lead. A tension behind a contact seems
-    to lag: each force may have friction of its own, along any motion. Nothing where no sample is judged."""
-    here = logs.run == experiment
-    if not here.any() or not equation.moved:
-        return 0.0
-    info = equation.system.info
-    axes = [logs.moving[name][:2, here] for name in equation.moved]
-    driven = [s.name for s in info.inputs if s.dimension == "angle" and s.name in logs.driving]
-    anywhere = [*axes, *(logs.driving[name][:2, here] for name in driven)]
-    forces = [
-        equation.predicted.index((s.name,)) for s in info.outputs if s.dimension == "force" and s.name in logs.others
-    ]
-
-    def saved(row: int, motion: np.ndarray) -> float:
-        columns = [np.column_stack([_friction(motion[1]), bent]) for bent in _deflections(motion[0])]
-        return max(float(share[row]) * _saved(left[row, here], each) for each in columns)
-
-    own = [max(saved(row, motion) for motion in anywhere) for row in forces]
-    return max(saved(k, motion) for k, motion in enumerate(axes)) + sum(own)
+    motion is too small to slide, friction is a spring, and the motion seems to lead. Nothing where none of its samples
+    is judged."""
+    here, saved = logs.run == experiment, 0.0
+    for k, name in enumerate(equation.moved if here.any() else ()):
+        position, speed = logs.moving[name][:2, here]
+        for deflection in _deflections(position):
+            columns = np.column_stack([_friction(speed), deflection])
+            saved = max(saved, float(share[k]) * _saved(left[k, here], columns))
+    return saved
 
 
 def _by_prescribed(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:

@@ -121,8 +121,10 @@ def _keeps_samples(records: Sequence[tuple[np.ndarray, np.ndarray]], smooth: Seq
 def _keeps_switches(experiment: Experiment, given: InputInfo, factor: int) -> bool:
     """Whether what a switch turns on or off begins at a sample that is kept: half a sample moves a release by more than
     its sensor errs."""
+    if given.dimension != "ratio":
+        return True
     turns = np.flatnonzero(np.diff(_column(experiment, given.name))) + 1
-    return given.dimension != "ratio" or not np.any(turns % factor)
+    return not np.any(turns % factor)
 
 
 def _keeps_motion(smooth: Sequence[Thinned], noise: float) -> bool:
