@@ -20,6 +20,7 @@ from tendonlab.report.plot.where import colour_bar, shared_scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import YAxis
     from matplotlib.figure import Figure
 
     from tendonlab.report.diagnosis import Diagnosis, Overlay
@@ -72,8 +73,25 @@ class Picture:
         import matplotlib
 
         with matplotlib.rc_context(FIGURE | {"svg.hashsalt": self.name}):  # the same diagnosis gives the same bytes
+            if self.figure.get_layout_engine():
+                _lay_out(self.figure)
             self.figure.savefig(stream, dpi=160, **options)
-        self.figure.set_layout_engine(None)  # laid out once; a second save need not repeat it
+
+
+def _lay_out(figure: Figure) -> None:
+    """Lay the figure out once for all saves, the y labels of axes above each other in line. Where labels stand,
+    matplotlib would work out anew in each draw, which takes longer than the draw."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine(None)
+    columns: dict[tuple[float, str], dict[YAxis, float]] = {}
+    for ax in figure.axes:
+        axis, left = ax.yaxis, round(ax.get_position().x0, 3)
+        place = float(ax.transAxes.inverted().transform((axis.label.get_position()[0], 0.0))[0])
+        columns.setdefault((left, axis.get_label_position()), {})[axis] = place
+    for (_, side), places in columns.items():
+        outermost = min(places.values()) if side == "left" else max(places.values())
+        for axis in places:
+            axis.set_label_coords(outermost, 0.5)
 
 
 def embed(svg: str, png: Callable[[], bytes], *, name: str, alt: str) -> Markup:
@@ -135,7 +153,6 @@ def _overlay(diagnosis: Diagnosis, run: Overlay) -> Figure:
         draw_input(ax, run, name, unit=diagnosis.units.get(name, ""), window=window)
     for ax in axes[:-1]:
         ax.set_xlabel("")
-    figure.align_ylabels(axes)
     parts = [ax.get_legend_handles_labels() for ax in axes[:2]]
     handles, labels = parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     figure.legend(handles, labels, ncols=5, loc="outside upper left", handlelength=1.6, columnspacing=1.4)
