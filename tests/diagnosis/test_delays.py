@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab.diagnosis.search.delays import LEAST, trouble_with_delays
+from tendonlab.diagnosis.search.delays import LEAST, trouble_with_delays, twin_delays, with_twins_even
+from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -53,3 +54,23 @@ def test_logs_that_were_thinned_had_finer_stamps(fitter: Fitter) -> None:
 
 def test_other_effects_have_no_delay(fitter: Fitter, nominal: Fitted) -> None:
     assert trouble_with_delays(fitter.case, nominal, "joint:stribeck") == ""
+
+
+def alone(case: Case, **replay: Any) -> Case:
+    """The case as if the joint angle and the motor torque were all that was logged."""
+    noise = np.where(np.array(case.outputs) == "joint_angle", case.noise, np.nan)
+    signals = {n: s for n, s in case.dataset.signals.items() if n in ("motor_torque", "joint_angle")}
+    dataset = replace(case.dataset, signals=signals, controller=None)
+    return replace(case, noise=noise, dataset=dataset, replay=replace(case.replay, **replay))
+
+
+def test_a_late_command_and_the_only_sensor_late_are_twins_beside_a_logged_command(fitter: Fitter) -> None:
+    twins = {"actuation:delay", "sensor.joint_angle:delay"}
+    case = alone(fitter.case, kind="injection")
+    assert twin_delays(case) == twins
+    assert twin_delays(alone(fitter.case, kind="controller")) == set()  # the loop answers a late sensor
+    assert twin_delays(replace(case, noise=fitter.case.noise)) == set()  # the motor is measured as well
+    gains = {"sensor.joint_angle:delay": 90.0, "joint:presliding": 70.0, "actuation:delay": 60.0}
+    trials: Any = [Trial(name, None, gain, 1.0, 0.0) for name, gain in gains.items()]  # type: ignore[arg-type]
+    even = [(t.effect, t.evidence_gain) for t in with_twins_even(case, trials)]
+    assert even == [("sensor.joint_angle:delay", 90.0), ("actuation:delay", 90.0), ("joint:presliding", 70.0)]

@@ -23,7 +23,8 @@ def test_nobody_is_far_behind_a_promise_that_was_not_kept(
     monkeypatch.setattr(workshop, "_tried", tried)
     pool: Any = SimpleNamespace(map=map)
     shop = workshop.Workshop(pool, cancel=None, progress=False, library=None)  # type: ignore[arg-type]
-    base: Any = SimpleNamespace(counted=lambda: SimpleNamespace(evidence=0.0))
+    case = SimpleNamespace(replay=SimpleNamespace(kind="controller"))
+    base: Any = SimpleNamespace(counted=lambda: SimpleNamespace(evidence=0.0), case=case)
     marks = {"far_behind": True, "poor_when_believed": True}
     chosen = [Screened("first", 500.0, ({},), 1.0), Screened("other", 20.0, ({},), 1.0, **marks)]
     shop.refit_all(base, base, chosen, "effect", least=least)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -11,6 +12,7 @@ from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
 from tendonlab.diagnosis.answer.allowed import allowed
 from tendonlab.diagnosis.answer.beliefs import strain
+from tendonlab.diagnosis.answer.by_noise import more_by_noise
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.explore import explore
@@ -51,7 +53,7 @@ def answer(
     drift = over_session(case, search.final, held_out_factors(fitter, search.final))
     outlier = None if search.selected else find_outlier_run(case, search.tuned, floor)
     near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
-    levels = _levels(search, nominal, stages, near, floor, drift, outlier)
+    levels = _levels(search, nominal, stages, near, floor, drift, outlier, judged=judged, seed=seed)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=fitter.floor.repeated)
     verdict = calibration.applied(raw)
     how = notes.details(shown.case, floor, nominal, search, drift) | {"steps": shown.table_of_steps(search)}
@@ -125,6 +127,9 @@ def _levels(
     floor: Floor,
     drift: Drift | None,
     outlier: OutlierRun | None = None,
+    *,
+    judged: Sequence[int] = (),
+    seed: int = 0,
 ) -> Levels:
     case, final, doubtful = search.fitter.case, search.final, not floor.repeated
     levels = Levels(
@@ -142,6 +147,8 @@ def _levels(
         strained=strain(case, final),
         drifted=drift.chance if drift and drift.tells else 1.0,
     )
+    if levels.repeated and levels.is_far:
+        levels = replace(levels, by_noise=more_by_noise(case, final.system, floor, judged, seed=seed))
     return outlier.left_out(levels, nominal) if outlier else levels
 
 

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline
 from tendonlab import _core
 from tendonlab.data.units import convert
 from tendonlab.diagnosis.answer.motions import Motion, eased, instants, motions
+from tendonlab.diagnosis.search.delays import twin_delays
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, Marginal, solved
@@ -37,11 +38,10 @@ def advise(case: Case, driven: Replay, floor: Floor, first: Fitted, second: Fitt
     """Motions ranked by the nats that they are expected to bring between two explanations, best first, each with its
     `reference`; `driven`: the loop in which the rig follows them. Empty where the rig cannot be driven in the simulator
     or nothing separates them."""
-    loop = _loop(case, driven)
-    if loop is None:
+    loop, names = _loop(case, driven), sorted(set(first.added) ^ set(second.added))
+    if loop is None or twin_delays(case).issuperset(names):
         return []
     found = []
-    names = sorted(set(first.added) ^ set(second.added))
     for motion in motions(case, loop.output):
         try:
             gain = _separation(case, floor, first, second, motion, loop)

@@ -56,7 +56,8 @@ class Levels:
     `trained`: the mean square of that in units of what run-to-run friction may leave; and, where nothing was selected,
     `scattered`: by how much friction differs from run to run. `strained`: by how many stated standard deviations the
     fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of friction over the session, 1
-    where there is none that matters."""
+    where there is none that matters. `by_noise`: by how many times more noise alone leaves of held-out experiments than
+    of repeated ones."""
 
     nominal: float
     tuned: float
@@ -71,6 +72,19 @@ class Levels:
     strained: float = 0.0
     drifted: float = 1.0
     foretold: float | None = None
+    by_noise: float = 1.0
+
+    @property
+    def far_room(self) -> float:
+        """By how much held-out experiments keep clear of what is no noise: a stop, say, that no training run
+        reaches."""
+        most = FAR_REPEATED * self.by_noise * max(1.0, self.tuned) if self.repeated else FAR
+        return most - self.refitted
+
+    @property
+    def is_far(self) -> bool:
+        """Whether held-out experiments hold what is no noise."""
+        return self.far_room < 0.0
 
     def most_followed(self, *, selected: bool) -> float:
         """Share of what the final model leaves that may follow the motion; beyond that something is missing. Where
@@ -103,7 +117,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)
     noise = _noise_room(levels, selected=bool(selected))
-    is_far = min(_far_room(levels), noise if levels.nominal > NO_GAP else 1.0) < 0.0
+    is_far = levels.is_far or (levels.nominal > NO_GAP and noise < 0.0)
     is_missing = levels.drifted <= RARE or (levels.repeated and is_far)
     at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
@@ -148,7 +162,7 @@ def _whole(levels: Levels) -> float:
 def _room(levels: Levels) -> float:
     """By how much an error may be noise; below 0 it is none."""
     noise = _noise_room(levels, selected=False)
-    common = min(_far_room(levels), noise, _chance_room(levels), _belief_room(levels, STRAINED))
+    common = min(levels.far_room, noise, _chance_room(levels), _belief_room(levels, STRAINED))
     if levels.repeated:
         return min(NEAR_FLOOR - levels.tuned, common)
     return min(SOFT, FAR_SCATTERED - levels.scattered, common)
@@ -162,11 +176,6 @@ def _belief_room(levels: Levels, most: float) -> float:
 def _chance_room(levels: Levels) -> float:
     """By how much a trend of friction over the session may be chance; below 0 it is none."""
     return SOFT * float(np.log(max(levels.drifted, 1e-9) / RARE))
-
-
-def _far_room(levels: Levels) -> float:
-    """By how much held-out experiments keep clear of what is no noise: a stop, say, that no training run reaches."""
-    return (FAR_REPEATED * max(1.0, levels.tuned) if levels.repeated else FAR) - levels.refitted
 
 
 def _noise_room(levels: Levels, *, selected: bool) -> float:

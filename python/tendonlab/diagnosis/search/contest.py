@@ -63,6 +63,10 @@ class Round:
         shares[None] += sum(self.probability.values()) - sum(shares.values())
         return replace(self, probability=shares, accepted=None, established=frozenset())
 
+    def without(self, refuted: str) -> Round:
+        """The round whose place was contested beside an effect that was `refuted`, as if that had not been there."""
+        return replace(self, base=tuple(name for name in self.base if name != refuted))
+
     @classmethod
     def of(
         cls,

@@ -6,8 +6,12 @@ freedom answers sample by sample, where the real one may answer half a sample ea
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
+from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.report.numbers import number
@@ -39,3 +43,20 @@ def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
 
 def _ms(seconds: float) -> str:
     return number(1e3 * seconds, 2)
+
+
+def twin_delays(case: Case) -> frozenset[str]:
+    """A late command and a late sensor where no data of such experiments can tell them apart: that sensor is all that
+    was measured, and the logged command all that moves the rig. None elsewhere."""
+    if case.replay.kind == "controller" or len(case.measured) != 1 or len(case.dataset.inputs) != 1:
+        return frozenset()
+    return frozenset({"actuation:delay", f"sensor.{case.outputs[case.measured[0]]}:delay"})
+
+
+def with_twins_even(case: Case, trials: Sequence[Trial]) -> list[Trial]:
+    """The `trials`, best first, with the same evidence for twin delays. A replay that pulls the simulated motor to the
+    logged one treats them otherwise, which says nothing of the rig."""
+    twins = twin_delays(case)
+    most = max((t.evidence_gain for t in trials if t.effect in twins), default=0.0)
+    even = [replace(t, evidence_gain=most) if t.effect in twins else t for t in trials]
+    return sorted(even, key=lambda trial: -trial.evidence_gain)

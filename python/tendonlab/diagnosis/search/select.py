@@ -52,10 +52,10 @@ class Search:
 
     def without_last(self, fitter: Fitter, model: Fitted) -> Search:
         """The search as if the last effect had not been established, under the `fitter` for the `model` before."""
-        last = len(self.steps) - 1
+        last, refuted = len(self.steps) - 1, self.selected[-1]
         tuned, steps = (self.tuned, (*self.steps[: last - 1], model)) if last else (model, ())
-        rounds = (*self.rounds[:last], self.rounds[last].refuted())
-        return Search(fitter, tuned, steps, rounds, (self.selected[-1], *self.refuted))
+        rounds = (*(contest.without(refuted) for contest in self.rounds[:last]), self.rounds[last].refuted())
+        return Search(fitter, tuned, steps, rounds, (refuted, *self.refuted))
 
     @property
     def path(self) -> tuple[Fitted, ...]:

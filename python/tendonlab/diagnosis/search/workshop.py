@@ -10,7 +10,7 @@ from functools import partial
 
 from tendonlab import _core
 from tendonlab.diagnosis.search.bristles import trouble_with_bristles
-from tendonlab.diagnosis.search.delays import trouble_with_delays
+from tendonlab.diagnosis.search.delays import trouble_with_delays, with_twins_even
 from tendonlab.diagnosis.search.refit import refit, restarted
 from tendonlab.diagnosis.search.screen import Screened, candidates, screen
 from tendonlab.diagnosis.search.shares import with_whole_shares
@@ -89,7 +89,8 @@ class Workshop:
         trials = self._levelled(fitter, base, trials)
         holder = incumbent.effect if incumbent else None
         nothing = {t.effect: NOTHING for t in trials if t.is_nothing and t.effect != holder}
-        return Refitted([t for t in trials if t.effect not in nothing], failed | nothing)
+        left = with_twins_even(fitter.case, [t for t in trials if t.effect not in nothing])
+        return Refitted(left, failed | nothing)
 
     def _levelled(self, fitter: Fitter, base: Fitted, trials: list[Trial]) -> list[Trial]:
         """The trials, those close behind the first also from where it ended, and the first from where they did."""

@@ -1,0 +1,66 @@
+"""How far noise alone takes a perfect simulator from the floor on held-out experiments.
+
+An injection reads noisy logs. Where dry friction holds a part, that noise decides where the part stops, and the
+injection cannot move the part from there: stops leave more than the motion of which repeats told the floor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.signal import lfilter
+
+from tendonlab.diagnosis.answer import heldout
+from tendonlab.fitting.case import Case
+from tendonlab.fitting.noise import Floor
+from tendonlab.simulation.prepare import prepare
+from tendonlab.simulation.system import System
+
+ROUNDS = 1  # of replays of a replay: after more of them errors grow again
+DRAWS = 4  # of the noise
+BURN_IN = 500  # samples after which noise with memory has forgotten its start
+
+
+def more_by_noise(case: Case, system: System, floor: Floor, held_out: Sequence[int], *, seed: int) -> float:
+    """By how many times more noise alone leaves (mean square) of the experiments `held_out`, replayed by an injection
+    by the `system` that made them, than of those that repeat and so tell the `floor`; at least 1."""
+    labels = [case.experiments[i].repeat for i in case.train]
+    repeats = [i for i, label in zip(case.train, labels, strict=True) if label is not None and labels.count(label) > 1]
+    if case.replay.kind != "injection" or not case.test or not repeats:
+        return 1.0
+    rng = np.random.default_rng(seed)
+    held, told = (np.mean([_left(case, system, floor, i, rng) for i in of]) for of in (held_out, repeats))
+    return max(1.0, float(held / told)) if np.isfinite(held) and told > 0 else 1.0
+
+
+def _left(case: Case, system: System, floor: Floor, i: int, rng: np.random.Generator) -> float:
+    """Mean square over the floor that a replay by the `system` leaves of logs that it made itself and that hold noise
+    of the `floor`, averaged over the outputs."""
+    truth = heldout.replay(case, [system], [i]).outputs[0]
+    for _ in range(ROUNDS):
+        truth = heldout.replay(_logged(case, i, truth), [system], [i]).outputs[0]
+    levels = []
+    for _ in range(DRAWS):
+        logged = _logged(case, i, truth + _noise(floor, truth.shape, rng))
+        levels.append(heldout.level(heldout.replay(logged, [system], [i]), floor))
+    return float(np.mean(levels))
+
+
+def _logged(case: Case, i: int, outputs: np.ndarray) -> Case:
+    """The case in which experiment i logged those outputs."""
+    experiment, names = case.experiments[i], case.outputs
+    told = {names[c]: outputs[c] for c in case.measured if names[c] in experiment.data}
+    again = prepare(replace(experiment, data=experiment.data.assign(**told)), case.system, case.replay)
+    judged = np.isfinite(case.prepared[i].measured)
+    ready = replace(case.prepared[i], core=again.core, measured=np.where(judged, outputs, np.nan))
+    return replace(case, prepared=(*case.prepared[:i], ready, *case.prepared[i + 1 :]))
+
+
+def _noise(floor: Floor, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
+    """Noise of the floor (outputs, samples); none of an output that was not measured."""
+    drawn = np.zeros(shape)
+    for row, sd, memory in zip(drawn, floor.sd, floor.ar, strict=True):
+        white = sd * rng.normal(size=BURN_IN + shape[1])
+        row[:] = lfilter([1.0], [1.0, *(-a for a in memory)], white)[BURN_IN:]
+    return drawn
