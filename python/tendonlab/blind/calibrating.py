@@ -164,16 +164,23 @@ def stated_effects(cases: Sequence[Judged], of: Calibration) -> list[tuple[float
 
 
 def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:
-    """The content of calibration.json: with and without repeats the map, from how many cases of which rigs, what test
-    cases say of the map, and the kinds of rigs on which these confirm the map. Where no case is given to fit `on`, the
-    shipped map stays and is tested. Raises ValueError as `judged` does."""
+    """The content of calibration.json: the series of cases by the names of their sealed folders; with and without
+    repeats the map, from how many cases of which rigs, what test cases say of the map, and the kinds of rigs on which
+    these confirm the map. Where no case is given to fit `on`, the shipped map stays and is tested. Raises ValueError as
+    `judged` does."""
     cases, tests = judged(on), judged(test)
+    series = _names(on) or shipped_content()["series"]["fitted on"]
     content: dict[str, Any] = {"format": FORMAT, "tendonlab": version()}
+    content["series"] = {"fitted on": series, "tested on": _names(test)}
     for name, repeats in (("with repeats", True), ("without repeats", False)):
         mine, others = ([case for case in given if case.repeats == repeats] for given in (cases, tests))
         numbers = {kind: len(of) for kind, of in by_system(mine).items()} or shipped_content()[name]["fitted on"]
         content[name] = _one_map(fitted(mine) if mine else shipped(repeats=repeats), numbers, others)
     return content
+
+
+def _names(folders: Folders) -> list[str]:
+    return [Path(sealed).absolute().name for sealed, _ in folders]
 
 
 def _one_map(found: Calibration, numbers: Mapping[str, int], tests: Sequence[Judged]) -> dict[str, Any]:
