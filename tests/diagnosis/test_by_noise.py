@@ -1,6 +1,5 @@
 """Noise decides where a part stops that friction holds: a held-out run of stops leaves more, and nothing is wrong."""
 
-
 import numpy as np
 import pandas as pd
 import pytest

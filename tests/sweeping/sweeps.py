@@ -27,3 +27,11 @@ def extremes(chunk: np.ndarray) -> np.ndarray:
 
 def many(num_points: int) -> pd.DataFrame:
     return pd.DataFrame({"coulomb": np.linspace(0.0, 0.1, num_points), "viscous": np.linspace(0.02, 0.04, num_points)})
+
+
+def blas_threads(chunk: np.ndarray) -> np.ndarray:
+    """The most threads that linear algebra may use in a task."""
+    from threadpoolctl import threadpool_info
+
+    most = max((pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"), default=1)
+    return np.full(len(chunk), float(most))

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import nullcontext
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 import pytest
-from sweeps import SIM, extremes, many, pushed
+from sweeps import SIM, blas_threads, extremes, many, pushed
 
 import tendonlab as tl
 from tendonlab.sweeping import sizes
@@ -32,6 +34,13 @@ def test_the_number_of_threads_changes_no_bit(num_threads: int, monkeypatch: pyt
     whole = tl.sweep(SIM, many(200), experiment=pushed(), progress=False)
     monkeypatch.setattr("os.sched_getaffinity", lambda _: set(range(num_threads)))
     assert whole.identical(tl.sweep(SIM, many(200), experiment=pushed(), progress=False))
+
+
+@pytest.mark.parametrize("processes", [False, True])
+def test_a_function_multiplies_matrices_in_one_thread(processes: bool) -> None:
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) if processes else nullcontext() as executor:
+        found = tl.sweep(SIM, many(3), experiment=pushed(), reduce=blas_threads, executor=executor, progress=False)
+    assert (found["blas_threads"] == 1.0).all()
 
 
 def test_tasks_that_travel_take_at_least_half_a_second_unless_their_results_are_large() -> None:

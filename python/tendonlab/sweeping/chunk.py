@@ -9,6 +9,7 @@ import numpy as np
 
 from tendonlab.sweeping.reductions import Reduction
 from tendonlab.sweeping.run import Run
+from tendonlab.threads import with_one_blas_thread
 
 BLOCK_BYTES = 4e6  # of outputs that are reduced at a time: they stay in the cache
 
@@ -39,7 +40,9 @@ def simulate_chunk(run: Run, points: np.ndarray, keep: Keep, into: np.ndarray | 
     if keep.reduction is None:
         kept, messages = _samples(run, points, keep, into)
     else:
-        kept, messages = _reduced(run, points, keep.reduction)
+        # A function of the caller may multiply matrices: in one thread, so that threads change no bit.
+        reduced = with_one_blas_thread(_reduced) if keep.reduction.function else _reduced
+        kept, messages = reduced(run, points, keep.reduction)
         kept = kept.astype(keep.dtype)
     return Chunk(kept, messages, time.perf_counter() - began)
 

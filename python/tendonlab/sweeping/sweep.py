@@ -30,6 +30,7 @@ from tendonlab.sweeping.result import dataset_of
 from tendonlab.sweeping.run import Run, run_of
 from tendonlab.sweeping.storage import INTERRUPTED, Memory, Place, Storage
 from tendonlab.sweeping.stores import checked_out, create_store, missing_places, open_store
+from tendonlab.threads import with_one_blas_thread
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 DTYPES = ("float64", "float32")
 
 
+@with_one_blas_thread  # around all tasks of this process, which limit threads and free them again in any order
 def sweep(
     system: System,
     grid: Mapping[str, Sequence[float] | np.ndarray] | pd.DataFrame,
