@@ -1,5 +1,7 @@
 """What counts as found, and which probability was given to the truth."""
 
+from dataclasses import replace
+
 import pytest
 
 from rehearsal.stubs import says
@@ -21,6 +23,14 @@ def test_a_member_of_its_group_counts_and_the_group_is_summed() -> None:
     row = judged(says(twin, others=(TRUTH,), group=(twin, TRUTH)), TRUTH)
     assert (row["outcome"], row["right"]) == ("tied", True)
     assert row["on_truth"] == pytest.approx(0.98)
+
+
+def test_an_effect_that_is_selected_beside_something_unknown_must_be_likely() -> None:
+    beside = replace(says(TRUTH), verdict="unknown_effect")
+    assert judged(beside, TRUTH)["outcome"] == "found"
+    unlikely = replace(beside, effects=(replace(beside.effects[0], probability=0.2),))
+    row = judged(unlikely, TRUTH)
+    assert (row["outcome"], row["right"], row["on_truth"]) == ("unknown", False, 0.2)
 
 
 def test_another_effect_is_a_miss() -> None:

@@ -60,6 +60,19 @@ def test_repeats_may_be_held_out_and_a_sensor_silent(pendulum: Path) -> None:
     assert as_replayed(replace(rigs, noise=silent), floor, np.random.default_rng(0)).sensors[0].noise == 0.0
 
 
+@pytest.mark.cpu(30)
+@pytest.mark.parametrize("read", [0.0, 0.02])
+def test_noise_of_a_logged_command_is_no_noise_of_the_sensor(pendulum: Path, read: float) -> None:
+    """The rig does not feel that noise, a replay by the logged command does."""
+    rigs = repeated_rig(pendulum)
+    white = Sensor("joint_angle", 2e-4)
+    rigs = replace(rigs, noise=Noise((white,), 0.008, repeated=True, command=read))
+    logs = rigs.noisy(np.random.default_rng(8), rigs.system)
+    found = simulated_rig(logs).noise
+    assert found.command == pytest.approx(read, rel=0.1)
+    assert 0.5 < found.sensors[0].total / white.noise < 2.5  # without it ten times as much, to drift as the replay does
+
+
 def test_the_mean_power_is_the_variance() -> None:
     sensor = Sensor("q", 0.1, (0.6, 0.2))
     read = sensor.read(np.zeros(200_000), np.random.default_rng(1))

@@ -16,6 +16,7 @@ OUTCOMES = {
     "data_fault": "taken for a fault of the logs",
     "failed": "the diagnosis failed",
 }
+LIKELY = 0.5  # probability that an effect needs to be found where the verdict is that something unknown is there
 CLEAN = ("no_gap", "parameters_only")
 
 
@@ -30,8 +31,10 @@ def judged(why: Diagnosis, effect: str) -> dict[str, Any]:
     group = {effect, *(name for g in groups for name in g)} if effect else set()
     probability = {entry.name: float(entry.probability) for entry in why.effects}
     clean = sum(float(why.verdict_probability[verdict]) for verdict in CLEAN)
-    outcome = _outcome(why.verdict, named, effect, group)
     on_truth = min(1.0, sum(probability.get(name, 0.0) for name in group)) if effect else clean
+    outcome = _outcome(why.verdict, named, effect, group)
+    if outcome in ("found", "tied") and why.verdict == "unknown_effect" and on_truth < LIKELY:
+        outcome = "unknown"
     right = outcome in ("found", "tied") if effect else outcome == "nothing"
     if named:
         stated = on_truth if right and effect else max(probability.get(name, 0.0) for name in named)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tendonlab.rehearsal.result import Rehearsal
 
 
+OFTEN = 0.1  # share of the rigs that lack nothing
 NEAR = 2.0  # gap over noise
 
 
@@ -54,13 +55,16 @@ def page(of: Rehearsal) -> str:
 
 
 def headline(of: Rehearsal) -> str:
-    """How many effects would be found where they leave twice the noise floor or less, and at any size."""
+    """How many effects would be found where they leave twice the noise floor or less, and at any size; and how often
+    something is missed where nothing is missing, if that is often."""
     kinds = [e.threshold for e in of.effects if e.threshold is not None and e.threshold.kind != "above"]
     near = [threshold for threshold in kinds if threshold.size <= NEAR]
     further = f"; {len(kinds)} are found at some size that was tried" if len(kinds) > len(near) else ""
+    wrong, num = sum(share.hits for share in of.nothing.values()), of.nothing["effect"].num
+    false = f" But of {num} rigs that lack nothing {wrong} are told to lack something." if wrong > OFTEN * num else ""
     return (
         f"{len(near)} of {len(of.effects)} effects are found 9 times in 10 where they leave a gap of twice the noise "
-        f"floor or less{further}."
+        f"floor or less{further}.{false}"
     )
 
 

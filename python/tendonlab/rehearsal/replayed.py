@@ -24,8 +24,7 @@ MEMORY = 12  # samples
 
 def as_replayed(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> Noise:
     """The noise of `rigs`, corrected until their repeats leave the `floor` of the logs."""
-    again = tuple(replace(e, split="train") for e in rigs.runs if e.repeat is not None)
-    rigs = replace(rigs, rig=replace(rigs.rig, experiments=again), runs=again)
+    rigs = _repeating(rigs)
     outputs = {signal.name: c for c, signal in enumerate(rigs.system.info.outputs)}
     for _ in range(ROUNDS):
         left = [_left(rigs, random) for _ in range(DRAWS)]
@@ -38,6 +37,19 @@ def as_replayed(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -
             sensors.append(_with_power(sensor, np.clip(factor, 1.0 / MOST, MOST)))
         rigs = replace(rigs, noise=replace(rigs.noise, sensors=tuple(sensors)))
     return rigs.noise
+
+
+def leaves(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> float:
+    """The power that repeats of these `rigs` leave, over that of the `floor`; of the output that leaves most."""
+    left = [_left(_repeating(rigs), random) for _ in range(DRAWS)]
+    power = np.mean([np.square(one.rms) for one in left], axis=0)
+    return float(np.nanmax(power / np.square(floor.rms)))
+
+
+def _repeating(rigs: SimulatedRig) -> SimulatedRig:
+    """The rigs in their repeated experiments alone."""
+    again = tuple(replace(e, split="train") for e in rigs.runs if e.repeat is not None)
+    return replace(rigs, rig=replace(rigs.rig, experiments=again), runs=again)
 
 
 def spectrum(sd: float, memory: Sequence[float]) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from tendonlab.data import Dataset
 from tendonlab.diagnosis.floor import first_floor, rough_fit
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of, without_rounding
+from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of, noise_sd, without_rounding
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import SignalSpec
@@ -31,6 +32,11 @@ class Sensor:
     memory: tuple[float, ...] = ()
     resolution: float = 0.0
 
+    @property
+    def total(self) -> float:
+        """Sd of the noise, with its memory."""
+        return total_sd(self.noise, self.memory)
+
     def read(self, values: np.ndarray, random: np.random.Generator) -> np.ndarray:
         """`values`, shape (n,), as the sensor logs them."""
         from scipy.signal import lfilter
@@ -46,11 +52,13 @@ class Sensor:
 @dataclass(frozen=True)
 class Noise:
     """All that makes two runs of one experiment differ: the sensors, and the sd of the logarithm of each element's
-    friction. `repeated`: whether repeats of the rig showed it."""
+    friction. `repeated`: whether repeats of the rig showed it. `command`: sd of white noise in the logged command, SI,
+    that does not move the rig."""
 
     sensors: tuple[Sensor, ...]
     scatter: float
     repeated: bool
+    command: float = 0.0
 
 
 def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
@@ -93,13 +101,23 @@ def floor_of_repeats(rig: Dataset, case: Case) -> Floor | None:
     return floor if floor.repeated else None
 
 
-def _without_rounding(innovation: float, memory: list[float], resolution: float) -> float:
-    """The sd that drives noise with memory, before rounding: what repeats differ by holds that of the rounding."""
+def noise_of_command(rig: Dataset, name: str) -> float:
+    """Sd of the white noise in the logs of a command, SI."""
+    return float(np.median([noise_sd(e.data[name].to_numpy(dtype=float)) for e in rig]))
+
+
+def total_sd(innovation: float, memory: Sequence[float]) -> float:
+    """Sd of noise that `innovation` drives through an autoregression."""
     from scipy.signal import lfilter
 
     response = lfilter([1.0], [1.0, *(-a for a in memory)], np.eye(1, BURN_IN)[0])
-    total = innovation**2 * float(response @ response)
-    return innovation * float(np.sqrt(max(0.0, 1.0 - resolution**2 / 12.0 / total)))
+    return innovation * float(np.sqrt(response @ response))
+
+
+def _without_rounding(innovation: float, memory: list[float], resolution: float) -> float:
+    """The sd that drives noise with memory, before rounding: what repeats differ by holds that of the rounding."""
+    total = total_sd(innovation, memory)
+    return innovation * float(np.sqrt(max(0.0, 1.0 - resolution**2 / 12.0 / total**2)))
 
 
 def _white(signal: SignalSpec, case: Case, c: int) -> float:
