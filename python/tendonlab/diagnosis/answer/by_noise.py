@@ -25,7 +25,7 @@ BURN_IN = 500  # samples after which noise with memory has forgotten its start
 
 
 def more_by_noise(case: Case, system: System, floor: Floor, held_out: Sequence[int], *, seed: int) -> float:
-    """By how many times more noise alone may leave (mean square) of the experiments `held_out`, replayed by an injection
+    """By how many times more noise alone may leave (mean square) of the experiments `held_out`, replayed by injection
     by the `system` that made them, than it leaves of those that repeat and so tell the `floor`; at least 1."""
     labels = [case.experiments[i].repeat for i in case.train]
     repeats = [i for i, label in zip(case.train, labels, strict=True) if label is not None and labels.count(label) > 1]
