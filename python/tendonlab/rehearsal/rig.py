@@ -73,8 +73,8 @@ class SimulatedRig:
             read = values if random is None else sensor.read(values, random)
             logged[sensor.name] = np.where(np.isfinite(self._pattern(run, sensor.name)), read, np.nan)
         if command is not None:
-            read = 0.0 if random is None else self.noise.command * random.normal(size=len(command))
-            logged[str(self.drive.command)] = command + read
+            noise = 0.0 if random is None else self.noise.command * random.normal(size=len(command))
+            logged[str(self.drive.command)] = command + noise
         data = run.data.assign(**logged)
         return replace(run, data=data[[name for name in data.columns if name in self.rig.signals]])
 

@@ -14,7 +14,8 @@ from tendonlab.data import Dataset
 from tendonlab.diagnosis.floor import first_floor, rough_fit
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of, noise_sd, without_rounding
+from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of, without_rounding
+from tendonlab.simulation.reading import noise_sd
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import SignalSpec
