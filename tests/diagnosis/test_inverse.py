@@ -86,6 +86,19 @@ def test_a_regression_gives_the_parameters_of_the_axis_in_units_of_effort(case: 
     assert "rms in N·m" in table.note
 
 
+def test_uneven_stamps_change_no_parameter(case: Case) -> None:
+    """A filter that took the samples for even ones would see a motion that is faster where stamps are missing."""
+    kept = np.sort(np.random.default_rng(4).permutation(len(TIME))[: 4 * len(TIME) // 5])
+    fewer = tuple(replace(e, data=e.data.iloc[kept]) for e in case.experiments)
+    prepared = tuple(replace(r, measured=r.measured[:, kept]) for r in case.prepared)
+    uneven = replace(case, experiments=fewer, prepared=prepared)
+    with_friction = case.system.with_effects({"joint:coulomb": {"coulomb": 0.1}})
+    tables = [inverse_dynamics(of, [with_friction], judged=[1]) for of in (case, uneven)]
+    even, odd = (table.frame.iloc[0] for table in tables if table is not None)
+    for name in ("inertia", "viscous", "coulomb", "held-out rms"):
+        assert odd[name] == pytest.approx(even[name], rel=0.03), name
+
+
 def test_an_axis_whose_drive_was_not_logged_has_no_table(case: Case) -> None:
     """Nuts that move as prescribed have none; diagnoses of such logs ended."""
     bare = tuple(replace(e, data=e.data.drop(columns="motor_torque")) for e in case.experiments)

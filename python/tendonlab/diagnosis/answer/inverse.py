@@ -62,6 +62,7 @@ def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int
 def _motion(case: Case, i: int, output: int) -> Motion:
     """Experiment i filtered. The payload that it states adds to gravity, and an effort known to act on the axis helps
     the drive."""
+    from scipy.interpolate import CubicSpline
     from scipy.signal import butter, filtfilt
 
     experiment, info = case.experiments[i], case.system.info
@@ -74,12 +75,14 @@ def _motion(case: Case, i: int, output: int) -> Motion:
             effort = effort + experiment.data[known.name].to_numpy(dtype=float)
     recorded = pd.DataFrame({"position": case.prepared[i].measured[output], "effort": effort})
     whole = recorded.interpolate(limit_direction="both")
-    position, effort = (filtfilt(b, a, whole[name].to_numpy()) for name in whole)
+    even = np.arange(time[0], time[-1] + 0.5 * step, step)  # a filter knows no stamps
+    position = filtfilt(b, a, CubicSpline(time, whole["position"])(even))
+    effort = filtfilt(b, a, np.interp(even, time, whole["effort"]))
     gravity = info.with_role("payload")
     effort = effort - (experiment.add.get(gravity.name, 0.0) if gravity else 0.0) * np.sin(position)
-    velocity = np.gradient(position, time)
+    velocity = np.gradient(position, step)
     kept = slice(round(TRIM / step), -round(TRIM / step))
-    return Motion(position[kept], velocity[kept], np.gradient(velocity, time)[kept], effort[kept])
+    return Motion(position[kept], velocity[kept], np.gradient(velocity, step)[kept], effort[kept])
 
 
 def _gravity(system: System) -> list[str]:
