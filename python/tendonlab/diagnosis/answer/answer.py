@@ -86,6 +86,7 @@ def answer(
             *notes.not_asked(case, search, library),
             *notes.on_the_held_out(weighed, shown, near, search.selected),
             *notes.no_noise(levels, selected=bool(search.selected)),
+            *notes.stops(levels),
         ),
         units=notes.units(case),
         overlays=overlays(shown),

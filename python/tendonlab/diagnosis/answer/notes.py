@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 APART = 1.5  # ratio of held-out errors in the closed loop and in an injection, beyond which a reader must know both
 UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatability is the limit
+TOLD = 1.2  # times as much by noise alone, from which a reader is told
 
 
 def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
@@ -243,6 +244,16 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
             "pretension)."
         )
     return found
+
+
+def stops(levels: Levels) -> list[str]:
+    """A warning where noise decides what held-out experiments leave."""
+    if levels.by_noise < TOLD:
+        return []
+    return [
+        f"Noise alone may leave {levels.by_noise:.2g} times as much (mean square) of the held-out experiments as of "
+        "the repeated ones: where friction holds a part, noise decides where the part stops. The verdict allows for that."
+    ]
 
 
 def replay(case: Case) -> dict[str, Any]:
