@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pytest
 
 from tendonlab.diagnosis.answer import notes
 from tendonlab.diagnosis.answer.verdict import Levels
