@@ -252,7 +252,8 @@ def stops(levels: Levels) -> list[str]:
         return []
     return [
         f"Noise alone may leave {levels.by_noise:.2g} times as much (mean square) of the held-out experiments as of "
-        "the repeated ones: where friction holds a part, noise decides where the part stops. The verdict allows for that."
+        "the repeated ones: where friction holds a part, noise decides where that part stops. The verdict allows for "
+        "such noise."
     ]
 
 
