@@ -1,5 +1,6 @@
 """Plans: shapes, files, and what is refused."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pandas as pd
 import pytest
 
 import tendonlab as tl
+from tendonlab.rehearsal.build import simulated_rig
 from tendonlab.rehearsal.plan import planned_experiments, rig_without_logs, still_notes
 from tendonlab.rehearsal.sensors import stated_noise
 
@@ -46,6 +48,22 @@ def test_a_file_is_read_in_the_columns_and_units_of_the_dataset(planned: Path) -
     (made,) = planned_experiments(plan(planned, text), rig_without_logs(planned))
     assert made.data["reference_angle"].to_numpy() == pytest.approx(np.deg2rad(30) * np.sin(time), abs=1e-9)
     assert made.add == {"gravity_torque": 0.1}
+
+
+def test_a_rig_without_a_controller_follows_a_path_in_the_loop_of_its_logs(pendulum: Path, tmp_path: Path) -> None:
+    """As the references have it that a diagnosis proposes."""
+    time = np.arange(0.0, 4.0, 0.01)
+    path = 0.4 * np.sin(3.0 * time)
+    pd.DataFrame({"t": time, "q": path}).to_csv(tmp_path / "next-1.csv", index=False)
+    file = plan(tmp_path, HEAD + '[[experiments]]\nname = "next"\nfile = "next-1.csv"\nsplit = "train"\n')
+    rig = rig_without_logs(pendulum)
+    rigs = simulated_rig(rig, planned_experiments(file, rig))
+    (log,) = rigs.noisy(np.random.default_rng(0), rigs.system).experiments
+    assert np.std(log.data["joint_angle"] - path) < 0.2 * np.std(path)  # the loop is soft
+    assert np.ptp(log.data["motor_torque"]) > 0.3  # gravity alone asks for 0.4 N·m
+    alone = replace(rig, experiments=())
+    with pytest.raises(tl.DatasetError, match=r"follow joint_angle; expected logs whose loop is known, or a column of"):
+        simulated_rig(alone, planned_experiments(file, alone))
 
 
 def test_a_planned_experiment_that_never_moves_is_named(planned: Path) -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from tendonlab.data import Dataset, Experiment
+from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import make_case
-from tendonlab.rehearsal.drive import drive_of
+from tendonlab.rehearsal.drive import Drive, drive_of
+from tendonlab.rehearsal.plan import followed
 from tendonlab.rehearsal.replayed import as_replayed, leaves
 from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.sensors import Noise, floor_of_repeats, noise_of_command, noise_of_rig, stated_noise
+from tendonlab.report.words import listing
 
 LESS = 0.7  # of the noise of a sensor that must be enough beside noise of the command
 TOO_MUCH = 1.3  # times the power of the floor that repeats may leave with noise of the command
@@ -21,9 +25,24 @@ def simulated_rig(rig: Dataset, planned: tuple[Experiment, ...] | None = None) -
     """Rigs like the user's, in the experiments of its logs or in `planned` ones. The noise is that of the logs where
     there are any."""
     noise = _noise_of_logs(rig) if rig.experiments else stated_noise(rig)
-    if planned is not None:
-        rig = replace(rig, experiments=planned)
-    return replace(_driven(rig, noise), planned=planned is not None)
+    if planned is None:
+        return _driven(rig, noise)
+    drive = _following(rig, asked) if (asked := followed(planned, rig)) else None
+    return replace(_driven(replace(rig, experiments=planned), noise, drive), planned=True)
+
+
+def _following(rig: Dataset, asked: Sequence[str]) -> Drive:
+    """The loop of the logs, in which the rig follows the outputs `asked`. Raises DatasetError where there is none."""
+    drive = drive_of(rig) if rig.experiments else Drive(None, None)
+    measured = None if drive.controller is None else drive.controller.measured
+    if set(asked) != {measured}:
+        command = rig.system().info.command
+        raise DatasetError(
+            f"the plan asks the rig to follow {listing(asked)}; expected "
+            + (f"{measured}, as the logs have it, or " if measured else "logs whose loop is known, or ")
+            + f"a column of {command.name if command else 'the inputs'}"
+        )
+    return drive
 
 
 def _noise_of_logs(rig: Dataset) -> Noise:
@@ -46,6 +65,6 @@ def _noise_of_logs(rig: Dataset) -> Noise:
     return other if suits and min(less) < LESS and max(less) <= 1.0 / LESS else found
 
 
-def _driven(rig: Dataset, noise: Noise) -> SimulatedRig:
-    drive = drive_of(rig)
+def _driven(rig: Dataset, noise: Noise, drive: Drive | None = None) -> SimulatedRig:
+    drive = drive_of(rig) if drive is None else drive
     return SimulatedRig(rig, drive, tuple(drive.prepared(e) for e in rig), noise)

@@ -31,7 +31,7 @@ class Drive:
 
     def prepared(self, experiment: Experiment) -> Experiment:
         """The experiment with the columns that the loop needs: the logged motion and the logged command."""
-        if not self.tracks or self.controller is None:
+        if not self.tracks or self.controller is None or self.controller.measured not in experiment.data:
             return experiment
         data, time = experiment.data, experiment.time
         path = _smooth_path(time, data[self.controller.measured].to_numpy(dtype=float))
@@ -46,7 +46,8 @@ class Drive:
         What a tracking loop commands between samples is not logged. So the rig moves as the logged command alone moves
         it: only then can a diagnosis explain the logs by the rig. A rig that would fall or drift away keeps the motion
         in the loop."""
-        if self.controller is None or self.command is None:
+        if self.controller is None or self.command is None or (self.tracks and REFERENCE not in run.data):
+            system = replace(system, controller=None if self.tracks else system.controller)
             return system.simulate(run, tolerance=tolerance).outputs, None
         loop = self.controller if not self.tracks else replace(self.controller, sample_time=self._clock(run))
         looped = replace(system, controller=loop).simulate(run, tolerance=tolerance).outputs

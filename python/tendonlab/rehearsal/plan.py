@@ -21,6 +21,7 @@ from tendonlab.errors import DatasetError, expected_one_of
 from tendonlab.rehearsal.shapes import SHAPES, planned_path
 from tendonlab.report.numbers import number, unit_text
 from tendonlab.report.words import listing
+from tendonlab.simulation.records import SignalSpec
 
 FORMAT = "tendonlab-plan/1"
 TOP_KEYS = ("format", "rate", "experiments")
@@ -63,15 +64,22 @@ def planned_experiments(file: Path, rig: Dataset) -> tuple[Experiment, ...]:
             raise tables[k].error("name", f"duplicate experiment name {name!r}")
     splits = _splits(tables)
     made = tuple(_experiment(top, table, split, rig, file) for table, split in zip(tables, splits, strict=True))
-    driving = _driving(tables[0], rig)
+    driving = next(iter(followed(made, rig)), _driving(tables[0], rig))
     if all(float(np.ptp(e.data[driving].to_numpy(dtype=float))) == 0.0 for e in made if driving in e.data.columns):
         raise top.error("experiments", f"{driving} is constant in all of them; expected it to vary")
     return made
 
 
+def followed(planned: Sequence[Experiment], rig: Dataset) -> list[str]:
+    """The outputs that planned experiments ask a rig without a stated controller to follow."""
+    asked = {} if rig.controller else {n: None for e in planned for n in rig.outputs if n in e.data.columns}
+    return list(asked)
+
+
 def still_notes(planned: Sequence[Experiment], rig: Dataset) -> Iterator[str]:
     """A note for each planned experiment whose inputs and references never change."""
     driving = [name for name, spec in rig.signals.items() if spec.role in ("input", "reference", "disturbance")]
+    driving += followed(planned, rig)
     for experiment in planned:
         given = {name: experiment.data[name] for name in driving if name in experiment.data.columns}
         if all((values == values.iloc[0]).all() for values in given.values()):
@@ -142,14 +150,17 @@ def _from_shape(top: Table, table: Table, rig: Dataset) -> pd.DataFrame:
 
 
 def _from_file(table: Table, rig: Dataset, plan: Path) -> pd.DataFrame:
-    """Inputs and references of a CSV next to the plan: columns and units as dataset.toml has them, time "t" in s."""
+    """Inputs and references of a CSV next to the plan: columns and units as dataset.toml has them, time "t" in s. In
+    place of the command it may hold the output that the rig is to follow, as proposed experiments do."""
     for key in ("shape", "signal", *OF_SHAPE):
         if key in table.values:
             raise table.error(key, "given together with file; expected one of them")
     file = plan.parent / table.text("file")
     if not file.is_file():
         raise table.error("file", f"{table.text('file')!r}: no such file next to {plan.name}")
-    wanted = [rig.signals[name] for name in dict.fromkeys((*_required(rig), *_optional(rig, file)))]
+    names = list(dict.fromkeys((*_required(rig), *_optional(rig, file))))
+    path = _path(rig, file)
+    wanted = [rig.signals[name] for name in names if path is None or name != path[1]] + ([path[0]] if path else [])
     columns = read_columns(file, ["t", *(spec.column for spec in wanted)])
     time = columns.values["t"]
     if not np.isfinite(time).all() or (np.diff(time) <= 0).any():
@@ -159,7 +170,18 @@ def _from_file(table: Table, rig: Dataset, plan: Path) -> pd.DataFrame:
         if not np.isfinite(values).all():
             row = int(np.flatnonzero(~np.isfinite(values))[0]) + 2
             raise DatasetError(f"{file.name}, row {row}: {name} is no finite number; a plan has no gaps")
-    return pd.DataFrame(data, index=pd.Index(time, name="t"))
+    frame = pd.DataFrame(data, index=pd.Index(time, name="t"))
+    return frame if path is None else frame.assign(**{path[1]: 0.0})
+
+
+def _path(rig: Dataset, file: Path) -> tuple[SignalSpec, str] | None:
+    """The output that a file asks the rig to follow, and the command that it leaves open; None where it has a command,
+    or a controller makes that."""
+    command, columns = rig.system().info.command, _columns(file)
+    if rig.controller is not None or command is None or command.name not in rig.signals:
+        return None
+    asked = [rig.signals[name] for name in rig.outputs if rig.signals[name].column in columns]
+    return (asked[0], command.name) if asked and rig.signals[command.name].column not in columns else None
 
 
 def _driving(table: Table, rig: Dataset) -> str:
@@ -184,10 +206,13 @@ def _required(rig: Dataset) -> list[str]:
 
 def _optional(rig: Dataset, file: Path) -> list[str]:
     """Further inputs of which the file has a column."""
-    head = file.read_text(encoding="utf-8").partition("\n")[0]
-    columns = [name.strip() for name in head.split(",")]
+    columns = _columns(file)
     inputs = [s for s in rig.signals.values() if s.role == "input" and s.name not in _made(rig)]
     return [s.name for s in inputs if s.column in columns]
+
+
+def _columns(file: Path) -> list[str]:
+    return [name.strip() for name in file.read_text(encoding="utf-8").partition("\n")[0].split(",")]
 
 
 def _made(rig: Dataset) -> list[str]:
