@@ -45,6 +45,7 @@ MISTAKES = {  # the logs, the guilty signal, what is logged over what it should 
     "radians as degrees": (lambda logs: replace(logs, units=("s", "deg", "A")), "joint_angle", np.pi / 180, DEGREES),
     "milliampere as ampere": (lambda logs: logs.changed(current=1000.0), "motor_torque", 1000.0, MILLI),
     "constant doubled": (lambda logs: replace(logs, constant=2 * CONSTANT), "motor_torque", 2.0, "a diameter and"),
+    "line for phase": (lambda logs: logs.changed(current=3**0.5), "motor_torque", 3**0.5, "a phase and of a line"),
     "milliseconds as seconds": (lambda logs: logs.changed(time=1000.0), "time", 1000.0, MILLI),
     "seconds as milliseconds": (lambda logs: replace(logs, units=("ms", "rad", "A")), "time", 0.001, MILLI),
 }

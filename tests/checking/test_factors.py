@@ -86,7 +86,7 @@ def test_each_signal_of_a_shared_factor_has_its_finding(rig: tl.Dataset) -> None
 
 
 @pytest.mark.parametrize(
-    ("value", "blocks"), [(1.0, False), (1.8, False), (1.9, True), (0.55, False), (0.53, True), (-1.0, True)]
+    ("value", "blocks"), [(1.0, False), (1.45, False), (1.55, True), (0.69, False), (0.65, True), (-1.0, True)]
 )
-def test_a_factor_of_less_than_1_85_is_a_parameter(value: float, blocks: bool) -> None:
+def test_a_factor_of_less_than_1_5_is_a_parameter(value: float, blocks: bool) -> None:
     assert _blocks(value) == blocks

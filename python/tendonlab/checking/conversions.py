@@ -16,6 +16,7 @@ KNOWN = (
     (9.81, "9.81", "1/9.81", "kilogram-force and newton"),
     (2.0 * math.pi, "2 pi", "1/(2 pi)", "turns and radians"),
     (2.0, "2", "1/2", "a diameter and a radius, or both sides and one"),
+    (math.sqrt(3.0), "sqrt(3)", "1/sqrt(3)", "values of a phase and of a line, as of a motor's current"),
 )
 
 
