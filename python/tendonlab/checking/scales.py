@@ -37,6 +37,7 @@ MERE = 0.9  # share of the gain of a negative factor at which a mere sign is bel
 HEALED = 0.1  # and share of the level of an equation that such a sign leaves
 AWAY = RATIO**-6  # of a channel that is explained away
 BLOCKING = 1.5  # a factor below it is a parameter: of 306 right rigs two asked for one, 1.33 and 1.42
+PASSED_ON = 1.85  # the same where a sheath passes torque on: its friction grows with the load, and asked for 1.80
 
 
 @dataclass(frozen=True)
@@ -59,15 +60,16 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
         return []
     if np.all(plain.level < SUSPECT) and plain.strain < STRAINED:
         return []
+    least = BLOCKING if equation.moved else PASSED_ON
     searched = [_searched(equation, rough, signals, sign, share) for signals, sign in _suspects(equation)]
     leading = sorted(searched, key=lambda f: f.fit.cost)[:REFINED]
     found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
-    found = [f for f in found if _is_credible(f, plain)]
+    found = [f for f in found if _is_credible(f, plain, least)]
     if not found:
         return []
     best = min(found, key=lambda f: f.fit.cost)
     told = best.fit.level < EXPLAINED
-    if not told.any() or not _blocks(best.value) or plain.cost - best.fit.cost < LEAST_GAIN:
+    if not told.any() or not _blocks(best.value, least) or plain.cost - best.fit.cost < LEAST_GAIN:
         return []
     slack = LEAST_GAIN + ALIKE_SHARE * (plain.cost - best.fit.cost)
     found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack]
@@ -78,7 +80,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     polished = [_mere_sign(equation, fine, f, share, base, told) for f in polished]
     judged = sorted((replace(f, gain=base.cost - f.fit.cost) for f in polished), key=lambda f: f.fit.cost)
     best = judged[0]
-    if best.gain < LEAST_GAIN or not _blocks(best.value) or np.any(best.fit.level[told] > EXPLAINED):
+    if best.gain < LEAST_GAIN or not _blocks(best.value, least) or np.any(best.fit.level[told] > EXPLAINED):
         return []
     if not _helps(best.fit, base, told) or not _convinces(best, base, told) or _suits_late(equation, logs, best, share):
         return []
@@ -87,7 +89,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
             return []
     elif _is_explained_away(equation, fine, best, base, told, share):
         return []
-    return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value)]
+    return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value, least)]
 
 
 def _is_explained_away(
@@ -100,10 +102,10 @@ def _is_explained_away(
     return _fitted(equation, logs, factor.signals, beyond, share).cost < factor.fit.cost + LEAST_GAIN
 
 
-def _is_credible(factor: Factor, plain: Fit) -> bool:
+def _is_credible(factor: Factor, plain: Fit, least: float) -> bool:
     """Whether beliefs may be strained as far as a corrected scale strains them: a mere sign may by any, and so may what
     brings an equation from far away near balance. There the logs as they are strain nothing, as nothing suits them."""
-    if not _blocks(-factor.value) or factor.fit.strain < max(plain.strain, CREDIBLE):
+    if not _blocks(-factor.value, least) or factor.fit.strain < max(plain.strain, CREDIBLE):
         return True
     return bool(np.any((factor.fit.level < NEARLY) & (factor.fit.level < SETTLED * plain.level)))
 
@@ -244,5 +246,5 @@ def shares(residual: np.ndarray, run: np.ndarray) -> np.ndarray:
     return 1.0 / np.maximum(np.array(memory), 1.0)
 
 
-def _blocks(value: float) -> bool:
-    return value < 0 or value >= BLOCKING or value <= 1 / BLOCKING
+def _blocks(value: float, least: float = BLOCKING) -> bool:
+    return value < 0 or value >= least or value <= 1 / least
