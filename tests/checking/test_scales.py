@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tendonlab.checking.regression import Fit
-from tendonlab.checking.scales import Factor, _convinces, _helps, _is_credible, shares
+from tendonlab.checking.scales import BLOCKING, Factor, _convinces, _helps, _is_credible, shares
 
 
 @pytest.mark.parametrize("times", [1, 5, 20])
@@ -75,4 +75,4 @@ def test_a_corrected_scale_may_strain_beliefs_where_it_brings_an_equation_to_bal
     value: float, level: float, strain: float, before: float, credible: bool
 ) -> None:
     factor = Factor(("output_torque",), value, left([level, 1.0], strain))
-    assert _is_credible(factor, left([before, 1.0], 0.1)) == credible
+    assert _is_credible(factor, left([before, 1.0], 0.1), BLOCKING) == credible
