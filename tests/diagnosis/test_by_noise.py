@@ -50,3 +50,11 @@ def test_stops_leave_more_than_a_swing_by_noise_alone(case: Case) -> None:
     more = {name: more_by_noise(case, case.system, FLOOR, [names.index(name)], seed=0) for name in ("swing", "stops")}
     assert more["swing"] < 1.1
     assert more["stops"] > 1.2
+
+
+def test_logs_that_cannot_be_simulated_explain_nothing(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    def failing(*_: object) -> None:
+        raise tl.NumericalError("too stiff")
+
+    monkeypatch.setattr("tendonlab.diagnosis.answer.by_noise.heldout.replay", failing)
+    assert more_by_noise(case, case.system, FLOOR, [case.test[0]], seed=0) == 1.0

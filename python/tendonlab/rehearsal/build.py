@@ -60,9 +60,10 @@ def _noise_of_logs(rig: Dataset) -> Noise:
     white = noise_of_rig(rig, case, None).sensors
     read = replace(noise, sensors=white, command=noise_of_command(rig, str(rigs.drive.command)))
     other = as_replayed(replace(rigs, noise=read), floor, np.random.default_rng(0))
-    less = [a.total / b.total for a, b in zip(other.sensors, found.sensors, strict=True)]
-    suits = leaves(replace(rigs, noise=other), floor, np.random.default_rng(1)) < TOO_MUCH
-    return other if suits and min(less) < LESS and max(less) <= 1.0 / LESS else found
+    pairs = [(a.total, b.total) for a, b in zip(other.sensors, found.sensors, strict=True)]
+    less, more = any(a < LESS * b for a, b in pairs), any(LESS * a > b for a, b in pairs)
+    suits = less and not more and leaves(replace(rigs, noise=other), floor, np.random.default_rng(1)) < TOO_MUCH
+    return other if suits else found
 
 
 def _driven(rig: Dataset, noise: Noise, drive: Drive | None = None) -> SimulatedRig:

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from tendonlab.diagnosis.answer import heldout
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.simulation.prepare import prepare
@@ -32,7 +33,10 @@ def more_by_noise(case: Case, system: System, floor: Floor, held_out: Sequence[i
     if case.replay.kind != "injection" or not case.test or not repeats:
         return 1.0
     rng = np.random.default_rng(seed)
-    held, told = (np.mean([_left(case, system, floor, i, rng) for i in of], axis=0) for of in (held_out, repeats))
+    try:
+        held, told = (np.mean([_left(case, system, floor, i, rng) for i in of], axis=0) for of in (held_out, repeats))
+    except NumericalError:  # what cannot be simulated explains nothing
+        return 1.0
     most = float(np.max(held) / np.mean(told))  # a few stops make draws differ
     return max(1.0, most) if np.isfinite(most) else 1.0
 
