@@ -72,5 +72,7 @@ def test_a_late_command_and_the_only_sensor_late_are_twins_beside_a_logged_comma
     assert twin_delays(replace(case, noise=fitter.case.noise)) == set()  # the motor is measured as well
     gains = {"sensor.joint_angle:delay": 90.0, "joint:presliding": 70.0, "actuation:delay": 60.0}
     trials: Any = [Trial(name, None, gain, 1.0, 0.0) for name, gain in gains.items()]  # type: ignore[arg-type]
+    trials[2] = replace(trials[2], left_out_gain=-5.0)  # one of them must not miss what the other reaches
+    assert [t.left_out_gain for t in with_twins_even(case, trials)[:2]] == [1.0, 1.0]
     even = [(t.effect, t.evidence_gain) for t in with_twins_even(case, trials)]
     assert even == [("sensor.joint_angle:delay", 90.0), ("actuation:delay", 90.0), ("joint:presliding", 70.0)]

@@ -66,6 +66,20 @@ def test_a_rig_without_a_controller_follows_a_path_in_the_loop_of_its_logs(pendu
         simulated_rig(alone, planned_experiments(file, alone))
 
 
+def test_a_rig_that_is_to_rest_in_one_run_may_be_moved_by_its_command_in_another(
+    pendulum: Path, tmp_path: Path
+) -> None:
+    time = np.arange(0.0, 2.0, 0.01)
+    pd.DataFrame({"t": time, "q": 0.1}).to_csv(tmp_path / "hold.csv", index=False)
+    held = '[[experiments]]\nname = "b"\nfile = "hold.csv"\n'
+    rig = rig_without_logs(pendulum)
+    push, rest = planned_experiments(plan(tmp_path, HEAD + CHIRP + held), rig)
+    assert np.ptp(push.data["motor_torque"]) > 0.5
+    assert (rest.data["joint_angle"] == 0.1).all()
+    with pytest.raises(tl.DatasetError, match="joint_angle is constant in all of them"):
+        planned_experiments(plan(tmp_path, HEAD + held), rig)
+
+
 def test_a_planned_experiment_that_never_moves_is_named(planned: Path) -> None:
     """Steps begin at 0: the second record ends before its first step."""
     steps = '[[experiments]]\nname = "{0}"\nshape = "steps"\namplitude = 0.2\noffset = 0.1\nduration = 4\nhold = {1}\n'

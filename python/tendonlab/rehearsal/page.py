@@ -60,7 +60,7 @@ def headline(of: Rehearsal) -> str:
     kinds = [e.threshold for e in of.effects if e.threshold is not None and e.threshold.kind != "above"]
     near = [threshold for threshold in kinds if threshold.size <= NEAR]
     further = f"; {len(kinds)} are found at some size that was tried" if len(kinds) > len(near) else ""
-    wrong, num = sum(share.hits for share in of.nothing.values()), of.nothing["effect"].num
+    wrong, num = of.nothing["effect"].hits + of.nothing["unknown_effect"].hits, of.nothing["effect"].num
     false = f" But of {num} rigs that lack nothing {wrong} are told to lack something." if wrong > OFTEN * num else ""
     return (
         f"{len(near)} of {len(of.effects)} effects are found 9 times in 10 where they leave a gap of twice the noise "

@@ -64,9 +64,10 @@ def planned_experiments(file: Path, rig: Dataset) -> tuple[Experiment, ...]:
             raise tables[k].error("name", f"duplicate experiment name {name!r}")
     splits = _splits(tables)
     made = tuple(_experiment(top, table, split, rig, file) for table, split in zip(tables, splits, strict=True))
-    driving = next(iter(followed(made, rig)), _driving(tables[0], rig))
-    if all(float(np.ptp(e.data[driving].to_numpy(dtype=float))) == 0.0 for e in made if driving in e.data.columns):
-        raise top.error("experiments", f"{driving} is constant in all of them; expected it to vary")
+    driving = [_driving(tables[0], rig), *followed(made, rig)]
+    given = [e.data[name].to_numpy(dtype=float) for e in made for name in driving if name in e.data.columns]
+    if all(float(np.ptp(values)) == 0.0 for values in given):
+        raise top.error("experiments", f"{driving[-1]} is constant in all of them; expected it to vary")
     return made
 
 
@@ -180,7 +181,8 @@ def _path(rig: Dataset, file: Path) -> tuple[SignalSpec, str] | None:
     command, columns = rig.system().info.command, _columns(file)
     if rig.controller is not None or command is None or command.name not in rig.signals:
         return None
-    asked = [rig.signals[name] for name in rig.outputs if rig.signals[name].column in columns]
+    moved = [output.name for output in rig.system().info.outputs if output.axis == 0]  # what a loop may hold
+    asked = [rig.signals[name] for name in moved if name in rig.outputs and rig.signals[name].column in columns]
     return (asked[0], command.name) if asked and rig.signals[command.name].column not in columns else None
 
 

@@ -39,7 +39,7 @@ def advise(case: Case, driven: Replay, floor: Floor, first: Fitted, second: Fitt
     `reference`; `driven`: the loop in which the rig follows them. Empty where the rig cannot be driven in the simulator
     or nothing separates them."""
     loop, names = _loop(case, driven), sorted(set(first.added) ^ set(second.added))
-    if loop is None or twin_delays(case).issuperset(names):
+    if loop is None or twin_delays(case) == set(names):
         return []
     found = []
     for motion in motions(case, loop.output):

@@ -48,7 +48,10 @@ def _ms(seconds: float) -> str:
 def twin_delays(case: Case) -> frozenset[str]:
     """A late command and a late sensor where no data of such experiments can tell them apart: that sensor is all that
     was measured, and the logged command all that moves the rig. None elsewhere."""
-    if case.replay.kind == "controller" or len(case.measured) != 1 or len(case.dataset.inputs) != 1:
+    if case.replay.kind == "controller" or len(case.measured) != 1:
+        return frozenset()
+    command = case.system.info.command
+    if command is None or list(case.dataset.inputs) != [command.name]:
         return frozenset()
     return frozenset({"actuation:delay", f"sensor.{case.outputs[case.measured[0]]}:delay"})
 
@@ -57,6 +60,12 @@ def with_twins_even(case: Case, trials: Sequence[Trial]) -> list[Trial]:
     """The `trials`, best first, with the same evidence for twin delays. A replay that pulls the simulated motor to the
     logged one treats them otherwise, which says nothing of the rig."""
     twins = twin_delays(case)
-    most = max((t.evidence_gain for t in trials if t.effect in twins), default=0.0)
-    even = [replace(t, evidence_gain=most) if t.effect in twins else t for t in trials]
+    pair = [t for t in trials if t.effect in twins]
+    if len(pair) < 2:
+        return list(trials)
+    best = max(pair, key=lambda trial: trial.evidence_gain)
+    gain, left_out, doubt = best.evidence_gain, best.left_out_gain, best.doubt
+    even = [
+        replace(t, evidence_gain=gain, left_out_gain=left_out, doubt=doubt) if t.effect in twins else t for t in trials
+    ]
     return sorted(even, key=lambda trial: -trial.evidence_gain)
