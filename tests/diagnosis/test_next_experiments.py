@@ -75,6 +75,10 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     assert reference["angle (deg)"].iloc[-1] == pytest.approx(np.degrees(path[-1]))
     assert np.diff(reference["angle (deg)"])[0] < 1e-3 * np.degrees(1 / RATE)  # from rest
     assert advise(case(), case("free").replay, floor, first, second) == []  # type: ignore[arg-type]
+    monkeypatch.setattr(next_experiments, "twin_delays", lambda _: {"x", "y"})
+    assert advise(case(), case().replay, floor, first, second) == []  # type: ignore[arg-type]
+    nothing: Any = SimpleNamespace(added=("both",))
+    assert advise(case(), case().replay, floor, first, nothing) != []  # type: ignore[arg-type]
 
 
 @pytest.fixture
