@@ -21,6 +21,7 @@ RUN_TO_RUN_UNKNOWN = 0.02  # the largest one that is plausible where nothing rep
 SMALLEST = 1e-7  # of a record's spread: what single precision resolves
 FOLLOWING = 0.5  # share of the measured samples that must follow on others without a gap, to tell coloured noise
 BLOCK = 2.0  # s: residuals of a mechanism stay correlated for less
+BURN_IN = 2000  # samples after which noise with memory has forgotten its start
 
 
 @dataclass(frozen=True)
@@ -130,6 +131,15 @@ def rounding_of(signal: SignalSpec) -> float:
 def without_rounding(noise: float, signal: SignalSpec) -> float:
     """The part of a signal's noise that is there before its readings are rounded."""
     return float(np.sqrt(max(0.0, noise**2 - rounding_of(signal) ** 2)))
+
+
+def drawn(sd: float, memory: Sequence[float], num: int, random: np.random.Generator) -> np.ndarray:
+    """Noise of `num` samples that `sd` drives through an autoregression, which has forgotten its start."""
+    from scipy.signal import lfilter
+
+    before = BURN_IN if len(memory) else 0
+    noise = sd * random.normal(size=before + num)
+    return np.asarray(lfilter([1.0], [1.0, *(-a for a in memory)], noise)[before:] if before else noise)
 
 
 def white(noise: np.ndarray) -> Floor:

@@ -14,13 +14,11 @@ from tendonlab.data import Dataset
 from tendonlab.diagnosis.floor import first_floor, rough_fit
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import RUN_TO_RUN, Floor, noise_of, without_rounding
+from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, noise_of, without_rounding
 from tendonlab.simulation.reading import noise_sd
 
 if TYPE_CHECKING:
     from tendonlab.simulation.records import SignalSpec
-
-BURN_IN = 2000  # samples after which noise with memory has forgotten its start
 
 
 @dataclass(frozen=True)
@@ -40,13 +38,7 @@ class Sensor:
 
     def read(self, values: np.ndarray, random: np.random.Generator) -> np.ndarray:
         """`values`, shape (n,), as the sensor logs them."""
-        from scipy.signal import lfilter
-
-        before = BURN_IN if self.memory else 0
-        noise = self.noise * random.normal(size=before + len(values))
-        if self.memory:
-            noise = lfilter([1.0], [1.0, *(-a for a in self.memory)], noise)[before:]
-        read = values + noise
+        read = values + drawn(self.noise, self.memory, len(values), random)
         return np.asarray(np.round(read / self.resolution) * self.resolution if self.resolution else read)
 
 

@@ -10,19 +10,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import lfilter
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.noise import Floor, drawn
 from tendonlab.simulation.prepare import prepare
 from tendonlab.simulation.reading import noise_sd
 from tendonlab.simulation.system import System
 
 ROUNDS = 1  # of replays of a replay: after more of them errors grow again
 DRAWS = 4  # of the noise
-BURN_IN = 500  # samples after which noise with memory has forgotten its start
 
 
 def more_by_noise(case: Case, system: System, floor: Floor, held_out: Sequence[int], *, seed: int) -> float:
@@ -49,7 +47,8 @@ def _left(case: Case, system: System, floor: Floor, i: int, rng: np.random.Gener
         truth = heldout.replay(_logged(case, i, truth), [system], [i]).outputs[0]
     levels = []
     for _ in range(DRAWS):
-        logged = _logged(case, i, truth + _noise(floor, truth.shape, rng), rng)
+        noise = [drawn(sd, memory, truth.shape[1], rng) for sd, memory in zip(floor.sd, floor.ar, strict=True)]
+        logged = _logged(case, i, truth + noise, rng)
         levels.append(heldout.level(heldout.replay(logged, [system], [i]), floor))
     return levels
 
@@ -65,12 +64,3 @@ def _logged(case: Case, i: int, outputs: np.ndarray, rng: np.random.Generator | 
     judged = np.isfinite(case.prepared[i].measured)
     ready = replace(case.prepared[i], core=again.core, measured=np.where(judged, outputs, np.nan))
     return replace(case, prepared=(*case.prepared[:i], ready, *case.prepared[i + 1 :]))
-
-
-def _noise(floor: Floor, shape: tuple[int, ...], rng: np.random.Generator) -> np.ndarray:
-    """Noise of the floor (outputs, samples); none of an output that was not measured."""
-    drawn = np.zeros(shape)
-    for row, sd, memory in zip(drawn, floor.sd, floor.ar, strict=True):
-        white = sd * rng.normal(size=BURN_IN + shape[1])
-        row[:] = lfilter([1.0], [1.0, *(-a for a in memory)], white)[BURN_IN:]
-    return drawn
