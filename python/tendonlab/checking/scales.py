@@ -37,7 +37,7 @@ MERE = 0.9  # share of the gain of a negative factor at which a mere sign is bel
 HEALED = 0.1  # and share of the level of an equation that such a sign leaves
 AWAY = RATIO**-6  # of a channel that is explained away
 BLOCKING = 1.5  # a factor below it is a parameter: of 306 right rigs two asked for one, 1.33 and 1.42
-PASSED_ON = 1.85  # the same where no axis moves by an equation: friction of a sheath grows with the load, asked for 1.80
+PASSED_ON = 1.85  # where no axis moves by an equation: friction of a sheath grows with the load, and asked for 1.80
 
 
 @dataclass(frozen=True)
