@@ -1,6 +1,6 @@
 """Puts the compiled core in the place of this module: the build for the widest vectors that the processor has.
 
-`TENDONLAB_CORE` names the build to take instead: "wide" (AVX-512) or "base"."""
+`TENDONLAB_CORE` names the build to take instead: "wide" (AVX-512), "base" (AVX2) or "old" (any x86-64)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from importlib.machinery import ExtensionFileLoader
 from importlib.util import find_spec, module_from_spec, spec_from_loader
 from types import ModuleType
 
-BUILDS = ("wide", "base")  # the best first
+BUILDS = ("wide", "base", "old")  # the best first; "old" is in wheels, and where the machine that built it is one
 
 
 def _load(build: str) -> ModuleType:
@@ -29,18 +29,25 @@ def _load(build: str) -> ModuleType:
 
 def _choose() -> ModuleType:
     wanted = os.environ.get("TENDONLAB_CORE")
-    if wanted is None:
+    if wanted is not None and wanted not in BUILDS:
+        raise ImportError(f"TENDONLAB_CORE = {wanted!r}: expected {', '.join(BUILDS[:-1])} or {BUILDS[-1]}")
+    return _load(wanted) if wanted is not None else _best()
+
+
+def _best() -> ModuleType:
+    """The first build that was installed and that the processor can run."""
+    refused: ImportError | None = None
+    for build in BUILDS:
         try:
-            return _load(BUILDS[0])
-        except ModuleNotFoundError:
-            return _load(BUILDS[-1])
-        except ImportError as error:  # a broken file is no reason to be slower in silence
-            if "needs a processor" not in str(error):
+            return _load(build)
+        except ModuleNotFoundError as error:
+            refused = refused or error
+        except ImportError as error:
+            if "needs a processor" not in str(error):  # a broken file is no reason to be slower in silence
                 raise
-            return _load(BUILDS[-1])
-    if wanted not in BUILDS:
-        raise ImportError(f"TENDONLAB_CORE = {wanted!r}: expected {' or '.join(BUILDS)}")
-    return _load(wanted)
+            refused = error
+    assert refused is not None
+    raise refused
 
 
 sys.modules[__name__] = _choose()
