@@ -11,7 +11,7 @@ from tendonlab.fitting.case import make_case
 from tendonlab.rehearsal.build import simulated_rig
 from tendonlab.rehearsal.replayed import GRID, as_replayed, spectrum
 from tendonlab.rehearsal.rig import SimulatedRig
-from tendonlab.rehearsal.sensors import Noise, Sensor, floor_of_repeats, noise_of_rig
+from tendonlab.rehearsal.sensors import Noise, Sensor, floor_of_logs, noise_of_rig
 
 SLOW = Sensor("joint_angle", 2e-4, (0.97,))  # 0.8 mrad, a memory of 33 samples
 
@@ -35,7 +35,7 @@ def test_slow_noise_that_the_replay_follows_is_given_back(pendulum: Path) -> Non
     """The floor of the repeats alone holds a fraction of its power."""
     rigs = repeated_rig(pendulum)
     case = make_case(rigs.rig)
-    floor = floor_of_repeats(rigs.rig, case)
+    floor = floor_of_logs(rigs.rig, case)
     assert floor is not None
     once = noise_of_rig(rigs.rig, case, floor)
     true = slow_power(Noise((SLOW,), 0.0, repeated=True))
@@ -51,7 +51,7 @@ def test_repeats_may_be_held_out_and_a_sensor_silent(pendulum: Path) -> None:
     """No noise stays no noise."""
     rigs = repeated_rig(pendulum)
     case = make_case(rigs.rig)
-    floor = floor_of_repeats(rigs.rig, case)
+    floor = floor_of_logs(rigs.rig, case)
     assert floor is not None
     held = tuple(replace(run, split="test") for run in rigs.runs)
     noise = as_replayed(replace(rigs, runs=held), floor, np.random.default_rng(0))

@@ -71,28 +71,45 @@ def diagnose(
         dataset = without_outliers(dataset)
     system = dataset.system() if system is None else system
     _require_samples(dataset, system)
-    few = thinned(dataset, system)
-    loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
     with open_workshop(names, progress=progress) as shop:
-        case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
-        rough, fitter = _under_floor(case, shop)
-        if fitter.floor.tau > UNREPEATED and (logged := opened(few, system)).controller is not few.controller:
-            case = make_case(replace(logged, warnings=(*logged.warnings, NO_REPEAT)), system)
-            rough, fitter = _under_floor(case, shop)
-        initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
-        nominal = fitter.fit(  # any: there may be no unknowns
-            case.system, initial=initial, known=True, solve=any(initial), tolerance=PLAIN
-        )
-        tuned = fitter.fit(rough.system, initial=initial)
-        fitter, tuned = renewed(fitter, tuned, shop.pool)
-        search = confirmed(select_effects(fitter, tuned, shop), shop)
-        log.info("selected %s", search.selected)
+        search, nominal, loop = _search(dataset, system, shop)
         found = _checked_again(found, dataset, search)
         if found.blocks and not force:
             return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
         why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
     return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
+
+
+@with_one_blas_thread
+def best_model(dataset: Dataset) -> Fitted:
+    """The model of `dataset` that a diagnosis ends with, without its answer. Raises as `diagnose`."""
+    system = dataset.system()
+    _require_samples(dataset, system)
+    with open_workshop(None, progress=False) as shop:
+        search, _, _ = _search(dataset, system, shop)
+        return search.final
+
+
+def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None]:
+    """A finished search; the untouched simulator, fitted in its initial states alone; and the logs with their
+    controller, where models were weighed without."""
+    few = thinned(dataset, system)
+    loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
+    case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
+    rough, fitter = _under_floor(case, shop)
+    if fitter.floor.tau > UNREPEATED and (logged := opened(few, system)).controller is not few.controller:
+        case = make_case(replace(logged, warnings=(*logged.warnings, NO_REPEAT)), system)
+        rough, fitter = _under_floor(case, shop)
+    initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
+    nominal = fitter.fit(  # any: there may be no unknowns
+        fitter.case.system, initial=initial, known=True, solve=any(initial), tolerance=PLAIN
+    )
+    tuned = fitter.fit(rough.system, initial=initial)
+    fitter, tuned = renewed(fitter, tuned, shop.pool)
+    search = confirmed(select_effects(fitter, tuned, shop), shop)
+    log.info("selected %s", search.selected)
+    return search, nominal, loop
 
 
 def _checked_again(found: Check, dataset: Dataset, search: Search) -> Check:

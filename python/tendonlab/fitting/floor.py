@@ -170,6 +170,21 @@ def _without_repeats(case: Case, seen: Sequence[Sensitivities], fitted: Sequence
     return Floor(rms, [[] for _ in sd], sd.tolist(), RUN_TO_RUN, repeated=False, known=known)
 
 
+def remaining(case: Case, seen: Sequence[Sensitivities]) -> Floor:
+    """Where nothing repeats: the noise, with its memory, that a model leaves of experiments. What the model lacks
+    counts as noise too."""
+    cleaned = [_clean(case, own.residual, own)[0] for own in seen]
+    ar: list[list[float]] = [[] for _ in case.noise]
+    rms, sd = np.array(case.noise, dtype=float), [0.0 for _ in ar]
+    for c in case.measured:
+        records = [d[c] for d in cleaned if np.isfinite(d[c]).any()]
+        sd[c] = float(case.noise[c])
+        if records and (left := _rms([record - np.nanmean(record) for record in records])) > sd[c]:
+            rms[c] = left
+            ar[c], sd[c] = _autoregression(records)
+    return Floor(rms, ar, sd, RUN_TO_RUN, repeated=False)
+
+
 def whitenings(case: Case, floor: Floor, seen: Sequence[Sensitivities] = ()) -> list[_core.Whitening]:
     """Whitening of every experiment by the autoregression. Run-to-run friction is an unknown of its own in a fit; of an
     experiment that nothing is fitted to, it is a random effect along what was `seen`."""

@@ -14,7 +14,7 @@ from tendonlab.rehearsal.drive import Drive, drive_of
 from tendonlab.rehearsal.plan import followed
 from tendonlab.rehearsal.replayed import as_replayed, leaves
 from tendonlab.rehearsal.rig import SimulatedRig
-from tendonlab.rehearsal.sensors import Noise, floor_of_repeats, noise_of_command, noise_of_rig, stated_noise
+from tendonlab.rehearsal.sensors import Noise, floor_of_logs, noise_of_command, noise_of_rig, stated_noise
 from tendonlab.report.words import listing
 
 LESS = 0.7  # of the noise of a sensor that must be enough beside noise of the command
@@ -46,10 +46,10 @@ def _following(rig: Dataset, asked: Sequence[str]) -> Drive:
 
 
 def _noise_of_logs(rig: Dataset) -> Noise:
-    """Where runs repeat, the noise with which simulated ones differ as much, once replayed. Noise of a logged command
+    """The noise with which simulated logs leave as much as those of the rig, once replayed. Noise of a logged command
     that did not move the rig moves a replay: without it the sensors would seem to drift."""
     case = make_case(rig)
-    floor = floor_of_repeats(rig, case)
+    floor = floor_of_logs(rig, case)
     noise = noise_of_rig(rig, case, floor)
     if floor is None:
         return noise

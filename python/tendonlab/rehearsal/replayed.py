@@ -1,4 +1,4 @@
-"""Noise of the sensors that leaves, once replayed, what the repeats of the rig leave.
+"""Noise of the sensors that leaves, once replayed, what the logs of the rig leave.
 
 A replay follows slow noise of the motion that it is told, so the floor holds less of that noise than the readings.
 Readings with the noise of the floor would lose the slow part twice, and every effect would show too early."""
@@ -11,20 +11,21 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.fitting.case import make_case
-from tendonlab.fitting.floor import estimate, sensitivities
+from tendonlab.fitting.floor import estimate, remaining, sensitivities
 from tendonlab.fitting.noise import Floor
 from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.sensors import Noise, Sensor
 
-ROUNDS, DRAWS = 4, 3  # corrections, and sets of repeats that are simulated for each
+ROUNDS, DRAWS = 4, 3  # corrections, and sets of logs that are simulated for each
+MOST_RUNS = 4  # simulated where nothing repeats
 GRID = 4096  # frequencies, from 0 to the rate of the logs
 MOST = 16.0  # times the power by which a correction changes a frequency
 MEMORY = 12  # samples
 
 
 def as_replayed(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> Noise:
-    """The noise of `rigs`, corrected until their repeats leave the `floor` of the logs."""
-    rigs = _repeating(rigs)
+    """The noise of `rigs`, corrected until they leave the `floor` of the logs."""
+    rigs = _telling(rigs)
     outputs = {signal.name: c for c, signal in enumerate(rigs.system.info.outputs)}
     for _ in range(ROUNDS):
         left = [_left(rigs, random) for _ in range(DRAWS)]
@@ -40,16 +41,20 @@ def as_replayed(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -
 
 
 def leaves(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> float:
-    """The power that repeats of these `rigs` leave, over that of the `floor`; of the output that leaves most."""
-    left = [_left(_repeating(rigs), random) for _ in range(DRAWS)]
+    """The power that these `rigs` leave, over that of the `floor`; of the output that leaves most."""
+    left = [_left(_telling(rigs), random) for _ in range(DRAWS)]
     power = np.mean([np.square(one.rms) for one in left], axis=0)
     return float(np.nanmax(power / np.square(floor.rms)))
 
 
-def _repeating(rigs: SimulatedRig) -> SimulatedRig:
-    """The rigs in their repeated experiments alone."""
-    again = tuple(replace(e, split="train") for e in rigs.runs if e.repeat is not None)
-    return replace(rigs, rig=replace(rigs.rig, experiments=again), runs=again)
+def _telling(rigs: SimulatedRig) -> SimulatedRig:
+    """The rigs in the experiments that tell the floor: those that repeat, else some of those that a model is fitted to.
+    """
+    if rigs.noise.repeated:
+        told = tuple(replace(e, split="train") for e in rigs.runs if e.repeat is not None)
+    else:
+        told = tuple(e for e in rigs.runs if e.split == "train")[:MOST_RUNS]
+    return replace(rigs, rig=replace(rigs.rig, experiments=told), runs=told)
 
 
 def spectrum(sd: float, memory: Sequence[float]) -> np.ndarray:
@@ -59,10 +64,11 @@ def spectrum(sd: float, memory: Sequence[float]) -> np.ndarray:
 
 
 def _left(rigs: SimulatedRig, random: np.random.Generator) -> Floor:
-    """What the repeats of one simulated rig leave, replayed by the simulator that made them."""
+    """What the logs of one simulated rig leave, replayed by the simulator that made them."""
     case = make_case(rigs.noisy(random, rigs.system))
     runs = range(len(case.experiments))
-    return estimate(case, [sensitivities(case, case.system, i, case.own_mean(i).tolist()) for i in runs], list(runs))
+    seen = [sensitivities(case, case.system, i, case.own_mean(i).tolist()) for i in runs]
+    return estimate(case, seen, list(runs)) if rigs.noise.repeated else remaining(case, seen)
 
 
 def _with_power(sensor: Sensor, factor: np.ndarray) -> Sensor:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset
+from tendonlab.diagnosis.diagnose import best_model
 from tendonlab.diagnosis.floor import first_floor, rough_fit
-from tendonlab.errors import DatasetError
+from tendonlab.errors import DatasetError, NumericalError
 from tendonlab.fitting.case import Case
+from tendonlab.fitting.floor import remaining, sensitivities
 from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, noise_of, without_rounding
 from tendonlab.simulation.reading import noise_sd
 
@@ -55,7 +57,7 @@ class Noise:
 
 
 def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
-    """What the `floor` of repeats holds; without one the sensors' white noise, as stated or estimated from the logs,
+    """What the `floor` of the logs holds; without one the sensors' white noise, as stated or estimated from the logs,
     and the library's default scatter of friction."""
     sensors = []
     for c in case.measured:
@@ -66,7 +68,8 @@ def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
             sensors.append(Sensor(signal.name, own, tuple(floor.ar[c]), resolution))
         else:
             sensors.append(Sensor(signal.name, _white(signal, case, c), (), resolution))
-    return Noise(tuple(sensors), RUN_TO_RUN if floor is None else floor.tau, floor is not None)
+    is_repeated = floor is not None and floor.repeated
+    return Noise(tuple(sensors), floor.tau if floor is not None and floor.repeated else RUN_TO_RUN, is_repeated)
 
 
 def stated_noise(rig: Dataset) -> Noise:
@@ -84,14 +87,22 @@ def stated_noise(rig: Dataset) -> Noise:
     return Noise(tuple(sensors), RUN_TO_RUN, repeated=False)
 
 
-def floor_of_repeats(rig: Dataset, case: Case) -> Floor | None:
-    """What the repeats of the rig leave, None where nothing repeats."""
+def floor_of_logs(rig: Dataset, case: Case) -> Floor | None:
+    """What the repeats of the rig leave; where nothing repeats, what the best model of a diagnosis leaves, with its
+    memory: the noise of most rigs has a slow part, which no stated `noise_sd` holds. None where no model runs."""
     labels = [e.repeat for e in rig if e.repeat is not None]
-    if len(labels) == len(set(labels)):
+    if len(labels) > len(set(labels)):
+        with ThreadPoolExecutor() as pool:
+            floor, _ = first_floor(case, rough_fit(case, _core.Cancel()), pool)
+        if floor.repeated:
+            return floor
+    try:
+        best = best_model(rig)
+    except (DatasetError, NumericalError):
         return None
-    with ThreadPoolExecutor() as pool:
-        floor, _ = first_floor(case, rough_fit(case, _core.Cancel()), pool)
-    return floor if floor.repeated else None
+    system = replace(best.system, controller=case.system.controller)
+    own = [initial[: len(case.own_mean(i))] for i, initial in zip(case.train, best.initial, strict=True)]
+    return remaining(case, [sensitivities(case, system, i, start) for i, start in zip(case.train, own, strict=True)])
 
 
 def noise_of_command(rig: Dataset, name: str) -> float:
