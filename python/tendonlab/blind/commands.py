@@ -78,19 +78,30 @@ def _add_drawn(drawing: argparse.ArgumentParser) -> None:
     """What is drawn: the options that `draw` and `follow` share."""
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
+    text = "draw by a protocol, `standard` or a file; the options below change it"
+    drawing.add_argument("--protocol", metavar="NAME", help=text)
+    text = "what the series is for: development, calibration or test; the protocol refuses seeds that serve another one"
+    drawing.add_argument("--purpose", default="", help=text)
+    _add_shares(drawing)
+
+
+def _add_shares(drawing: argparse.ArgumentParser) -> None:
+    """Options that are None unless given: the generator, or a protocol, has the defaults."""
     text = "kind of rig, or mixed for all that the protocol draws (default two_inertia)"
-    drawing.add_argument("--system", default="two_inertia", metavar="KIND", help=text)
+    drawing.add_argument("--system", metavar="KIND", help=text)
     text = "share of the cases that repeat an experiment, 0 to 1 (default 1)"
-    drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
+    drawing.add_argument("--repeats", type=float, metavar="SHARE", help=text)
     text = "share of the cases whose cause the library lacks, 0 to 1 (default 0)"
-    drawing.add_argument("--unknown", type=float, default=0.0, metavar="SHARE", dest="unknown_share", help=text)
+    drawing.add_argument("--unknown", type=float, metavar="SHARE", dest="unknown_share", help=text)
     text = "of the cases that lack an effect, share that lacks a second one, 0 to 1 (default 0)"
-    drawing.add_argument("--pairs", type=float, default=0.0, metavar="SHARE", help=text)
+    drawing.add_argument("--pairs", type=float, metavar="SHARE", help=text)
     text = "share of the cases whose logs have a mistake: a sign, a unit, a late run, a file twice, 0 to 1 (default 0)"
-    drawing.add_argument("--faults", type=float, default=0.0, metavar="SHARE", help=text)
+    drawing.add_argument("--faults", type=float, metavar="SHARE", help=text)
+    text = "share of the effects in another form than the library's (default: half of those that have another one)"
+    drawing.add_argument("--other-form", type=float, metavar="SHARE", help=text)
     ends = ("LEAST", "LARGEST")
     text = "least and largest gap/noise of an effect (default 1 6)"
-    drawing.add_argument("--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=ends, help=text)
+    drawing.add_argument("--strengths", type=float, nargs=2, metavar=ends, help=text)
     text = "the same of the second effect of a pair (default: as --strengths)"
     drawing.add_argument("--second", type=float, nargs=2, metavar=ends, help=text)
 
@@ -157,9 +168,20 @@ def _follow(given: argparse.Namespace) -> int:
 
 
 def _drawn(given: argparse.Namespace) -> dict[str, Any]:
-    names = ("system", "repeats", "unknown_share", "pairs", "faults")
-    ranges = {"strengths": tuple(given.strengths), "second": tuple(given.second) if given.second else None}
-    return {name: getattr(given, name) for name in names} | ranges
+    if given.protocol:
+        from .protocol import read
+
+        return read(given.protocol).drawn(given.seed, purpose=given.purpose, changed=_shares(given))
+    if given.purpose:
+        raise ValueError(f"--purpose {given.purpose}: expected a --protocol, which says what its seeds are")
+    return _shares(given)
+
+
+def _shares(given: argparse.Namespace) -> dict[str, Any]:
+    """The options of `_add_shares` that were given."""
+    names = ("system", "repeats", "unknown_share", "pairs", "faults", "other_form", "strengths", "second")
+    chosen = {name: getattr(given, name) for name in names if getattr(given, name) is not None}
+    return {name: tuple(x) if isinstance(x, list) else x for name, x in chosen.items()}
 
 
 def _run(given: argparse.Namespace) -> int:
