@@ -1,9 +1,10 @@
-"""`tendonlab blind draw|run|follow|score|tell|results|calibrate`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|follow|score|tell|results|calibrate|campaign`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +25,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|tell|results|calibrate")
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|tell|results|calibrate|campaign")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -57,6 +58,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     _add_tell(verbs)
     _add_results(verbs)
     _add_calibrate(verbs)
+    _add_campaign(verbs)
 
 
 def _add_pace(parser: argparse.ArgumentParser) -> None:
@@ -115,6 +117,8 @@ def _add_results(verbs: Any) -> None:
     parser.add_argument("--on", required=True, help="diagnosed cases; may be given several times", **SERIES)
     text = "truths of one of these series, and what `tell` wrote; may be given several times"
     parser.add_argument("--told", default=[], help=text, **{**SERIES, "metavar": ("SEALED", "TOLD")})
+    text = "calibration.json whose map is shown (default: the shipped one)"
+    parser.add_argument("--map", type=Path, metavar="FILE", dest="map_file", help=text)
     parser.add_argument("--out", type=Path, required=True, help="folder of blind-results.md and its figures")
 
 
@@ -123,8 +127,9 @@ def _results(given: argparse.Namespace) -> int:
     from .results_page import write
 
     pairs = [f"--{name} {sealed} {of}" for name in ("on", "told") for sealed, of in getattr(given, name)]
+    pairs += [f"--map {given.map_file}"] if given.map_file else []
     command = f"tendonlab blind results {' '.join(pairs)} --out {given.out}"
-    print(write(results(given.on, given.told), given.out, command))
+    print(write(results(given.on, given.told, map_file=given.map_file), given.out, command))
     return 0
 
 
@@ -138,11 +143,47 @@ def _add_calibrate(verbs: Any) -> None:
 
 
 def _calibrate(given: argparse.Namespace) -> int:
-    from .calibrating import calibrate
+    from .calibrating import calibrate, write_map
 
-    content = json.dumps(calibrate(given.on, given.test), indent=2)
-    given.out.write_text(content + "\n", encoding="utf-8")
-    print(content)
+    write_map(calibrate(given.on, given.test), given.out)
+    print(given.out.read_text(encoding="utf-8"), end="")
+    return 0
+
+
+def _add_campaign(verbs: Any) -> None:
+    text = "draw by the protocol, diagnose, fit the map and write the page of results; an interrupted campaign goes on"
+    parser = _verb(verbs, "campaign", _campaign, text)
+    parser.add_argument("out", type=Path, metavar="OUT", help="folder of cases, reports, calibration.json and the page")
+    parser.add_argument("--sealed", type=Path, required=True, help="folder of the truths, outside OUT")
+    ends = ("CALIBRATION", "TEST")
+    text = "seeds of the series to fit the map on and of the one to test it"
+    parser.add_argument("--seeds", type=int, nargs=2, required=True, metavar=ends, help=text)
+    text = "number of cases of both series (default 600 300)"
+    parser.add_argument("--counts", type=int, nargs=2, default=(600, 300), metavar=ends, help=text)
+    text = "the protocol: `standard` (default) or a file; the options below change it"
+    parser.add_argument("--protocol", default="standard", metavar="NAME", help=text)
+    text = "diagnose the test series once more, told which effects are missing"
+    parser.add_argument("--tell", action="store_true", help=text)
+    _add_pace(parser)
+    _add_shares(parser)
+
+
+def _campaign(given: argparse.Namespace) -> int:
+    from .campaign import campaign
+
+    asked: dict[str, Any] = {name: getattr(given, name) for name in ("sealed", "protocol", "jobs", "timeout")}
+    asked |= {
+        "seeds": tuple(given.seeds),
+        "counts": tuple(given.counts),
+        "tells": given.tell,
+        "changed": _shares(given),
+    }
+    command = f"tendonlab blind {shlex.join(sys.argv[sys.argv.index('campaign') :])}"
+    total = 0.0
+    for stage in campaign(given.out, command=command, **asked):
+        total += stage.seconds
+        print(f"{stage.name}: {stage.seconds:.0f} s{', done before' if stage.was_done else ''}", flush=True)
+    print(f"all: {total:.0f} s; wrote {given.out / 'calibration.json'} and {given.out / 'blind-results.md'}")
     return 0
 
 

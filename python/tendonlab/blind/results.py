@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
+from tendonlab.diagnosis.answer.calibration import Calibration, calibration_of, shipped_content
 from tendonlab.rehearsal.tally import Share, share
 
 from .calibrating import Folders, Judged, judged
@@ -65,10 +67,20 @@ ROWS = (
 class Results:
     """`cases`: one row per case of all series, as `Score.cases`; also whether an effect was `named`, or something
     unknown `claimed`, where nothing is missing, and whether the gap `shrunk` as much as with the effects told.
-    `judged`: the cases whose probabilities count."""
+    `judged`: the cases whose probabilities count; `content`: of the calibration.json that maps their evidence."""
 
     cases: pd.DataFrame
     judged: tuple[Judged, ...]
+    content: Mapping[str, Any] = field(default_factory=shipped_content)
+
+    def map_of(self, *, repeats: bool) -> Calibration:
+        """The map from evidence to probability."""
+        return calibration_of(self.content, repeats=repeats)
+
+    @property
+    def map_is_shipped(self) -> bool:
+        """Whether it is the map that comes with this version."""
+        return self.content == shipped_content()
 
     @property
     def parts(self) -> dict[str, pd.DataFrame]:
@@ -123,17 +135,18 @@ def _count(cases: pd.DataFrame, row: Row) -> Share:
     return share(int(values.sum()), len(values))
 
 
-def results(folders: Folders, told: Folders = ()) -> Results:
+def results(folders: Folders, told: Folders = (), *, map_file: Path | None = None) -> Results:
     """The results of several series, each a folder of truths and one of reports; `told`: of some of them the truths
-    and what `tell` wrote. Raises ValueError as `score` and `judged` do, where no series is given, and where one was
-    told that is not given."""
+    and what `tell` wrote; `map_file`: another calibration.json than the shipped one. Raises ValueError as `score` and
+    `judged` do, where no series is given, and where one was told that is not given."""
     if not folders:
         raise ValueError("no series: expected at least one folder of truths with its folder of reports")
     oracles = {sealed.resolve(): reports for sealed, reports in told}
     if unknown := oracles.keys() - {sealed.resolve() for sealed, _ in folders}:
         raise ValueError(f"{min(unknown)}: expected the truths of one of the series, too")
     series = [_scored(sealed, reports, oracles.get(sealed.resolve())) for sealed, reports in folders]
-    return Results(cases=pd.concat(series), judged=tuple(judged(folders)))
+    content = json.loads(map_file.read_text(encoding="utf-8")) if map_file else shipped_content()
+    return Results(cases=pd.concat(series), judged=tuple(judged(folders)), content=content)
 
 
 def _scored(sealed: Path, reports: Path, told: Path | None) -> pd.DataFrame:

@@ -7,11 +7,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.rehearsal.tally import Share
 from tendonlab.version import version
 
-from .calibrating import Judged, by_system, results_on
+from .calibrating import by_system, results_on
 from .results import Results
 from .results_figures import pictures
 
@@ -57,21 +56,22 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
         yield images["blind-strength"]
     yield "## Probabilities"
     yield images["blind-reliability"]
+    which = "the shipped map" if found.map_is_shipped else "the map that was fitted (the shares above: as reported)"
     yield (
-        "How true the probabilities of the shipped map are. Each cell: share that came true; mean probability stated; "
+        f"How true the probabilities of {which} are. Each cell: share that came true; mean probability stated; "
         "calibration error beyond what chance shows at this number; Spiegelhalter's z; reliability slope."
     )
-    yield _table(["kind of rig", "cases", "verdicts", "effects"], list(_calibration(found.judged)))
+    yield _table(["kind of rig", "cases", "verdicts", "effects"], list(_calibration(found)))
     yield "## Wrong answers"
     yield "A right effect in another form than the library's, found under `unknown_effect`, counts as right here."
     columns = ["case", "system", "repeats", "missing", "gap/noise", "verdict told", "selected"]
     yield _table(columns, [_miss(str(name), case) for name, case in found.misses().iterrows()])
 
 
-def _calibration(cases: Sequence[Judged]) -> Iterable[list[object]]:
+def _calibration(found: Results) -> Iterable[list[object]]:
     for repeats in (False, True):
-        of = shipped(repeats=repeats)
-        mine = [case for case in cases if case.repeats == repeats]
+        of = found.map_of(repeats=repeats)
+        mine = [case for case in found.judged if case.repeats == repeats]
         for name, group in {"all": mine, **by_system(mine)}.items():
             if len(group) >= LEAST_CASES:
                 told = results_on(group, of)
