@@ -24,7 +24,7 @@ from tendonlab.diagnosis.answer.calibration import (
 )
 from tendonlab.version import version
 
-from .reliability import Array, error_beyond_chance, reliability_line, too_far_off
+from .reliability import Array, error_beyond_chance, reliability_line, spread_of_error, too_far_off
 from .runner import REPORT, VERDICTS
 
 LEAST_CASES = 20  # of a kind of rig, to confirm the map there
@@ -161,6 +161,13 @@ def stated_verdicts(cases: Sequence[Judged], of: Calibration) -> list[tuple[floa
 def stated_effects(cases: Sequence[Judged], of: Calibration) -> list[tuple[float, bool]]:
     """The probability of each effect of each case, and whether the effect is there."""
     return _tempered([event for case in cases for event in case.events()], of.effects)
+
+
+def spreads_on(cases: Sequence[Judged], of: Calibration) -> dict[str, float]:
+    """Standard deviations of the calibration errors of `results_on`, by bootstrap of the cases."""
+    verdicts = [[stated] for stated in stated_verdicts(cases, of)]
+    effects = [stated_effects([case], of) for case in cases]
+    return {"verdicts": spread_of_error(verdicts), "effects": spread_of_error(effects)}
 
 
 def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:

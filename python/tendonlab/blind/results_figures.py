@@ -38,7 +38,8 @@ def reliability(ax: Axes, cases: Sequence[Judged], of: Calibration) -> None:
         ax.errorbar(mean + shift, share, spread, label=f"{name} ({len(stated)})", **options)  # type: ignore[arg-type]
     tidy(ax, grid="both")
     ax.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), xlabel="Stated probability", ylabel="Share that came true")
-    ax.legend(loc="upper left")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="upper left")
 
 
 def _bins(stated: Sequence[tuple[float, bool]]) -> list[tuple[float, float, float, float]]:
