@@ -33,8 +33,8 @@ class Options:
     `other_form`: share of the single effects, and of the pairs, in another form than the library's, as far as effects
     have one; None: half of those that have one, each by its own draw.
 
-    A rig is drawn again until its effects are as strong as wanted, `met_within` the logarithm of gap/noise; after
-    `tries` rigs another effect takes the place.
+    A rig is drawn again until the logarithm of its gap/noise is as wanted, within `met_within`; after `tries` rigs
+    another effect takes the place.
     """
 
     system: str = "two_inertia"
