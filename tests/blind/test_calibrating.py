@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tendonlab.blind.calibrating import Judged, calibrate, fitted, results_on
-from tendonlab.blind.reliability import calibration_error, error_beyond_chance, reliability_line, too_far_off
+from tendonlab.blind.reliability import (
+    calibration_error,
+    error_beyond_chance,
+    interval_of_mean,
+    reliability_line,
+    spread_of_error,
+    too_far_off,
+)
 from tendonlab.diagnosis.answer.calibration import Calibration, Tempering, shipped
 from tendonlab.diagnosis.answer.verdict import Verdict
 
@@ -114,6 +122,50 @@ def test_true_probabilities_pass_and_false_ones_do_not() -> None:
     assert error_beyond_chance(probability, true) < 0.02 < error_beyond_chance(probability, false)
     assert reliability_line(probability, true)[0] == pytest.approx(1.0, abs=0.25)
     assert calibration_error(np.array([0.25, 0.25, 0.25, 0.25]), np.array([1.0, 0.0, 0.0, 0.0])) == 0.0
+
+
+def test_the_interval_of_a_mean_holds_the_true_mean_as_often_as_it_says() -> None:
+    draw = np.random.default_rng(2)
+    hits = 0
+    for _ in range(200):
+        interval = interval_of_mean(draw.beta(4.0, 1.0, 40))  # mean 0.8
+        assert interval
+        hits += interval[0] <= 0.8 <= interval[1]
+    assert 180 <= hits <= 198  # of 200; 190 expected, sd 3
+
+
+def test_the_interval_of_a_mean_at_the_end_of_the_range_has_a_width() -> None:
+    assert interval_of_mean(np.ones(10)) == pytest.approx((0.6915, 1.0), abs=1e-4)  # 0.025^(1/10)
+    assert interval_of_mean(np.array([0.4])) is None
+
+
+def test_the_spread_of_the_calibration_error_counts_rigs_and_not_their_effects() -> None:
+    """Ten answers of one rig that come true together say as much as one."""
+    draw = np.random.default_rng(3)
+    came = [bool(x) for x in draw.random(150) < 0.3]
+    one, ten = ([[(0.55, true)] * num for true in came] for num in (1, 10))
+    assert spread_of_error(ten) == pytest.approx(spread_of_error(one))
+    assert spread_of_error(one) == pytest.approx(np.sqrt(0.3 * 0.7 / 150), rel=0.1)  # of the share, in one bin
+
+
+@pytest.mark.parametrize(("fitted_on", "refused"), [("test", True), ("calibration", False)])
+def test_cases_that_were_drawn_to_test_are_never_fitted(tmp_path: Path, fitted_on: str, refused: bool) -> None:
+    origin = f'[protocol]\nversion = 3\nsha256 = "ab"\npurpose = "{fitted_on}"\n'
+    draw = '[draw]\nsystem = "rigid_joint"\nrepeats = true\n'
+    truth = f'verdict = "no_gap"\neffects = []\naccept = []\n{draw}{origin}'
+    (tmp_path / "case-001.toml").write_text(truth, encoding="utf-8")
+    (tmp_path / "case-001").mkdir()
+    evidence = {"verdict": {"no_gap": 0.9, "effect": 0.1}, "effects": {"load:offset": 0.1}}
+    report = {"verdict": "no_gap", "details": {"evidence": evidence}, "split": {"train": ["a"]}}
+    (tmp_path / "case-001" / "report.json").write_text(json.dumps(report), encoding="utf-8")
+    if refused:
+        with pytest.raises(ValueError, match=r"case-001.toml: this case was drawn for test; expected a series"):
+            calibrate([(tmp_path, tmp_path)])
+    else:
+        content = calibrate([(tmp_path, tmp_path)])
+        assert content["series"]["protocols"] == ["3 ab"]
+        with pytest.raises(ValueError, match="this case was drawn for calibration"):
+            calibrate(test=[(tmp_path, tmp_path)])
 
 
 def test_a_missing_report_is_named(tmp_path: Path) -> None:

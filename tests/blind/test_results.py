@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from tendonlab.blind.commands import main
 from tendonlab.blind.results import Results, results
 from tendonlab.blind.results_page import PAGE, write
 from tendonlab.blind.runner import REPORT, VERDICTS
+from tendonlab.diagnosis.answer.calibration import shipped_content
 
 EFFECTS = ("joint:stribeck", "joint:presliding", "load:offset")
 
@@ -97,8 +99,40 @@ def test_each_share_counts_the_cases_that_it_concerns(found: Results) -> None:
 
 
 def test_the_effect_of_a_group_of_three_counts_a_third(found: Results) -> None:
-    mean, num = found.means()["ranked first, a group of at most three counted as 1/size, gap/noise ≥ 1"][0]
-    assert (mean, num) == (pytest.approx((3 + 1 / 3) / 4), 4)
+    of = found.means()["ranked first, a group of at most three counted as 1/size, gap/noise ≥ 1"][0]
+    assert (of.mean, of.num) == (pytest.approx((3 + 1 / 3) / 4), 4)
+    assert of.ci95 == pytest.approx((0.5, 1.0))  # of the samples of four rigs 5 % hold the one third thrice or more
+
+
+def test_effects_that_were_reported_in_place_of_the_true_one_are_counted(
+    folders: tuple[Path, Path], found: Results
+) -> None:
+    """Right first effects are left out; where nothing is reported, the verdict takes the place."""
+    assert found.confused_effects() == {"load:offset": (1, {"joint:stribeck": 1})}
+    sealed, reports = folders
+    verdicts = json.loads((reports / VERDICTS).read_text(encoding="utf-8"))
+    verdicts["reports"]["beside"] = {"verdict": "failed"}
+    (reports / VERDICTS).write_text(json.dumps(verdicts), encoding="utf-8")
+    again = results([(sealed, reports)]).confused_effects()
+    assert again["joint:stribeck"] == (3, {"failed": 1})
+
+
+def test_another_map_changes_the_probabilities_and_the_page_says_so(folders: tuple[Path, Path], tmp_path: Path) -> None:
+    content = shipped_content()
+    even = {"temperature": 1.0, "lapse": 0.5}
+    for part in ("with repeats", "without repeats"):
+        content[part] = content[part] | {"map": {"verdicts": even, "effects": even}}
+    path = tmp_path / "calibration.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    pages = []
+    for name, of in (("shipped", None), ("own", path)):
+        write(results([folders], map_file=of), tmp_path / name, "tendonlab blind results")
+        pages.append((tmp_path / name / PAGE).read_text(encoding="utf-8"))
+    assert "of the shipped map are" in pages[0]
+    assert "of the fitted map are" in pages[1]
+    rows = [next(line for line in page.splitlines() if line.startswith("| all, without")) for page in pages]
+    stated = [float(row.split("|")[3].split(";")[1]) for row in rows]
+    assert stated[1] < stated[0] - 0.1
 
 
 def test_misses_are_those_whose_strictest_check_fails(found: Results) -> None:
@@ -113,6 +147,9 @@ def test_the_page_holds_tables_figures_and_misses(folders: tuple[Path, Path], tm
     assert page == out / PAGE
     text = page.read_text(encoding="utf-8")
     assert "| verdict right | 4 of 6 (22–96 %) | 1 of 3 (1–91 %) |" in text
+    assert "| load:offset | 1 of 1: joint:stribeck 1 |" in text
+    assert re.search(r"\| probability of the true effect.* \| 0\.\d\d \(0\.\d\d–0\.\d\d; of 4 rigs\) \| – \|", text)
+    assert re.search(r"\| all, without repeats \| 6 \|.*; −?0\.\d+ \(−0\.\d+ to 0\.\d+\);", text)
     assert "| seed-1/crash | rigid_joint | yes | creep | 9 | failed | – |" in text
     for name in ("blind-reliability", "blind-strength"):
         assert (out / "figures" / f"{name}.svg").is_file()

@@ -17,8 +17,9 @@ def rigs(monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(strength, "largest_amplitude", lambda rig: rig.largest)
 
     def made(*targets: float, largest: float = 1.0) -> list[Any]:
-        effects = [SimpleNamespace(kind="effect", target=target, largest=largest) for target in targets]
-        return [*effects, SimpleNamespace(kind="none", target=1.0, largest=largest)]
+        usual = {"largest": largest, "met_within": 0.18}
+        effects = [SimpleNamespace(kind="effect", target=target, **usual) for target in targets]
+        return [*effects, SimpleNamespace(kind="none", target=1.0, **usual)]
 
     return made
 
@@ -86,6 +87,15 @@ def test_a_strength_is_met_within_a_fifth(rigs: Any) -> None:
     assert [s.limited for s in found] == [False, False, True, False]
     assert [s.gap_noise for s in found] == pytest.approx([2.0 * np.exp(0.17), 2.0 * np.exp(-0.19), 2.0, 0.0])
     assert (found[0].amplitude, found[0].nominal_gap_noise, found[0].separation) == (0.3, 4.0, {"x": 1.0})
+
+
+def test_a_rig_may_allow_more(rigs: Any) -> None:
+    made = rigs(2.0, 2.0)
+    made[1].met_within = 0.5
+    search = _Search(made)
+    search.learn(np.array([3.0, 3.0]), np.arange(2))
+    found = [search.strength(i, before=4.0, floor=np.ones(3), separation={}) for i in range(2)]
+    assert [s.met for s in found] == [False, True]  # log 1.5 = 0.41
 
 
 def test_rigs_are_measured_until_all_are_done_and_six_times_at_most(rigs: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,7 +24,7 @@ from tendonlab.diagnosis.answer.calibration import (
 )
 from tendonlab.version import version
 
-from .reliability import Array, error_beyond_chance, reliability_line, too_far_off
+from .reliability import Array, error_beyond_chance, reliability_line, spread_of_error, too_far_off
 from .runner import REPORT, VERDICTS
 
 LEAST_CASES = 20  # of a kind of rig, to confirm the map there
@@ -163,20 +163,45 @@ def stated_effects(cases: Sequence[Judged], of: Calibration) -> list[tuple[float
     return _tempered([event for case in cases for event in case.events()], of.effects)
 
 
+def spreads_on(cases: Sequence[Judged], of: Calibration) -> dict[str, float]:
+    """Standard deviations of the calibration errors of `results_on`, by bootstrap of the cases."""
+    verdicts = [[stated] for stated in stated_verdicts(cases, of)]
+    effects = [stated_effects([case], of) for case in cases]
+    return {"verdicts": spread_of_error(verdicts), "effects": spread_of_error(effects)}
+
+
 def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:
     """The content of calibration.json: the series of cases by the names of their sealed folders; with and without
     repeats the map, from how many cases of which rigs, what test cases say of the map, and the kinds of rigs on which
     these confirm the map. Where no case is given to fit `on`, the shipped map stays and is tested. Raises ValueError as
-    `judged` does."""
+    `judged` does, and where cases were drawn to test and are to be fitted, or the other way round."""
+    origins = [*_origins(on, but="test"), *_origins(test, but="calibration")]
     cases, tests = judged(on), judged(test)
     series = _names(on) or shipped_content()["series"]["fitted on"]
     content: dict[str, Any] = {"format": FORMAT, "tendonlab": version()}
     content["series"] = {"fitted on": series, "tested on": _names(test)}
+    if origins:
+        content["series"]["protocols"] = sorted({f"{origin['version']} {origin['sha256']}" for origin in origins})
     for name, repeats in (("with repeats", True), ("without repeats", False)):
         mine, others = ([case for case in given if case.repeats == repeats] for given in (cases, tests))
         numbers = {kind: len(of) for kind, of in by_system(mine).items()} or shipped_content()[name]["fitted on"]
         content[name] = _one_map(fitted(mine) if mine else shipped(repeats=repeats), numbers, others)
     return content
+
+
+def _origins(folders: Folders, *, but: str) -> list[dict[str, Any]]:
+    """By which protocol the cases were drawn. Raises ValueError where they were drawn for the purpose `but`."""
+    paths = [path for sealed, _ in folders for path in sorted(Path(sealed).glob("*.toml"))]
+    origins = [(path, tomllib.loads(path.read_text(encoding="utf-8")).get("protocol")) for path in paths]
+    for path, origin in origins:
+        if origin and origin["purpose"] == but:
+            raise ValueError(f"{path}: this case was drawn for {but}; expected a series that serves another purpose")
+    return [origin for _, origin in origins if origin]
+
+
+def write_map(content: Mapping[str, Any], path: Path) -> None:
+    """Write the content of a calibration.json."""
+    path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
 def _names(folders: Folders) -> list[str]:

@@ -1,9 +1,10 @@
-"""`tendonlab blind draw|run|follow|score|tell|results|calibrate`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|follow|score|tell|results|calibrate|campaign`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +25,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|tell|results|calibrate")
+    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|tell|results|calibrate|campaign")
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -57,6 +58,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     _add_tell(verbs)
     _add_results(verbs)
     _add_calibrate(verbs)
+    _add_campaign(verbs)
 
 
 def _add_pace(parser: argparse.ArgumentParser) -> None:
@@ -78,19 +80,30 @@ def _add_drawn(drawing: argparse.ArgumentParser) -> None:
     """What is drawn: the options that `draw` and `follow` share."""
     drawing.add_argument("--seed", type=int, default=0, help="same seed, same cases (default 0)")
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
+    text = "draw by a protocol, `standard` or a file; the options below change it"
+    drawing.add_argument("--protocol", metavar="NAME", help=text)
+    text = "what the series is for: development, calibration or test; the protocol refuses seeds that serve another one"
+    drawing.add_argument("--purpose", default="", help=text)
+    _add_shares(drawing)
+
+
+def _add_shares(drawing: argparse.ArgumentParser) -> None:
+    """Options that are None unless given: the generator, or a protocol, has the defaults."""
     text = "kind of rig, or mixed for all that the protocol draws (default two_inertia)"
-    drawing.add_argument("--system", default="two_inertia", metavar="KIND", help=text)
+    drawing.add_argument("--system", metavar="KIND", help=text)
     text = "share of the cases that repeat an experiment, 0 to 1 (default 1)"
-    drawing.add_argument("--repeats", type=float, default=1.0, metavar="SHARE", help=text)
+    drawing.add_argument("--repeats", type=float, metavar="SHARE", help=text)
     text = "share of the cases whose cause the library lacks, 0 to 1 (default 0)"
-    drawing.add_argument("--unknown", type=float, default=0.0, metavar="SHARE", dest="unknown_share", help=text)
+    drawing.add_argument("--unknown", type=float, metavar="SHARE", dest="unknown_share", help=text)
     text = "of the cases that lack an effect, share that lacks a second one, 0 to 1 (default 0)"
-    drawing.add_argument("--pairs", type=float, default=0.0, metavar="SHARE", help=text)
+    drawing.add_argument("--pairs", type=float, metavar="SHARE", help=text)
     text = "share of the cases whose logs have a mistake: a sign, a unit, a late run, a file twice, 0 to 1 (default 0)"
-    drawing.add_argument("--faults", type=float, default=0.0, metavar="SHARE", help=text)
+    drawing.add_argument("--faults", type=float, metavar="SHARE", help=text)
+    text = "share of the effects in another form than the library's (default: half of those that have another one)"
+    drawing.add_argument("--other-form", type=float, metavar="SHARE", help=text)
     ends = ("LEAST", "LARGEST")
     text = "least and largest gap/noise of an effect (default 1 6)"
-    drawing.add_argument("--strengths", type=float, nargs=2, default=(1.0, 6.0), metavar=ends, help=text)
+    drawing.add_argument("--strengths", type=float, nargs=2, metavar=ends, help=text)
     text = "the same of the second effect of a pair (default: as --strengths)"
     drawing.add_argument("--second", type=float, nargs=2, metavar=ends, help=text)
 
@@ -104,6 +117,8 @@ def _add_results(verbs: Any) -> None:
     parser.add_argument("--on", required=True, help="diagnosed cases; may be given several times", **SERIES)
     text = "truths of one of these series, and what `tell` wrote; may be given several times"
     parser.add_argument("--told", default=[], help=text, **{**SERIES, "metavar": ("SEALED", "TOLD")})
+    text = "calibration.json whose map is shown (default: the shipped one)"
+    parser.add_argument("--map", type=Path, metavar="FILE", dest="map_file", help=text)
     parser.add_argument("--out", type=Path, required=True, help="folder of blind-results.md and its figures")
 
 
@@ -112,8 +127,9 @@ def _results(given: argparse.Namespace) -> int:
     from .results_page import write
 
     pairs = [f"--{name} {sealed} {of}" for name in ("on", "told") for sealed, of in getattr(given, name)]
+    pairs += [f"--map {given.map_file}"] if given.map_file else []
     command = f"tendonlab blind results {' '.join(pairs)} --out {given.out}"
-    print(write(results(given.on, given.told), given.out, command))
+    print(write(results(given.on, given.told, map_file=given.map_file), given.out, command))
     return 0
 
 
@@ -127,11 +143,47 @@ def _add_calibrate(verbs: Any) -> None:
 
 
 def _calibrate(given: argparse.Namespace) -> int:
-    from .calibrating import calibrate
+    from .calibrating import calibrate, write_map
 
-    content = json.dumps(calibrate(given.on, given.test), indent=2)
-    given.out.write_text(content + "\n", encoding="utf-8")
-    print(content)
+    write_map(calibrate(given.on, given.test), given.out)
+    print(given.out.read_text(encoding="utf-8"), end="")
+    return 0
+
+
+def _add_campaign(verbs: Any) -> None:
+    text = "draw by the protocol, diagnose, fit the map and write the page of results; an interrupted campaign goes on"
+    parser = _verb(verbs, "campaign", _campaign, text)
+    parser.add_argument("out", type=Path, metavar="OUT", help="folder of cases, reports, calibration.json and the page")
+    parser.add_argument("--sealed", type=Path, required=True, help="folder of the truths, outside OUT")
+    ends = ("CALIBRATION", "TEST")
+    text = "seeds of the series to fit the map on and of the one to test it"
+    parser.add_argument("--seeds", type=int, nargs=2, required=True, metavar=ends, help=text)
+    text = "number of cases of both series (default 600 300)"
+    parser.add_argument("--counts", type=int, nargs=2, default=(600, 300), metavar=ends, help=text)
+    text = "the protocol: `standard` (default) or a file; the options below change it"
+    parser.add_argument("--protocol", default="standard", metavar="NAME", help=text)
+    text = "diagnose the test series once more, told which effects are missing"
+    parser.add_argument("--tell", action="store_true", help=text)
+    _add_pace(parser)
+    _add_shares(parser)
+
+
+def _campaign(given: argparse.Namespace) -> int:
+    from .campaign import campaign
+
+    asked: dict[str, Any] = {name: getattr(given, name) for name in ("sealed", "protocol", "jobs", "timeout")}
+    asked |= {
+        "seeds": tuple(given.seeds),
+        "counts": tuple(given.counts),
+        "tells": given.tell,
+        "changed": _shares(given),
+    }
+    command = f"tendonlab blind {shlex.join(sys.argv[sys.argv.index('campaign') :])}"
+    total = 0.0
+    for stage in campaign(given.out, command=command, **asked):
+        total += stage.seconds
+        print(f"{stage.name}: {stage.seconds:.0f} s{', done before' if stage.was_done else ''}", flush=True)
+    print(f"all: {total:.0f} s; wrote {given.out / 'calibration.json'} and {given.out / 'blind-results.md'}")
     return 0
 
 
@@ -157,9 +209,20 @@ def _follow(given: argparse.Namespace) -> int:
 
 
 def _drawn(given: argparse.Namespace) -> dict[str, Any]:
-    names = ("system", "repeats", "unknown_share", "pairs", "faults")
-    ranges = {"strengths": tuple(given.strengths), "second": tuple(given.second) if given.second else None}
-    return {name: getattr(given, name) for name in names} | ranges
+    if given.protocol:
+        from .protocol import read
+
+        return read(given.protocol).drawn(given.seed, purpose=given.purpose, changed=_shares(given))
+    if given.purpose:
+        raise ValueError(f"--purpose {given.purpose}: expected a --protocol, which says what its seeds are")
+    return _shares(given)
+
+
+def _shares(given: argparse.Namespace) -> dict[str, Any]:
+    """The options of `_add_shares` that were given."""
+    names = ("system", "repeats", "unknown_share", "pairs", "faults", "other_form", "strengths", "second")
+    chosen = {name: getattr(given, name) for name in names if getattr(given, name) is not None}
+    return {name: tuple(x) if isinstance(x, list) else x for name, x in chosen.items()}
 
 
 def _run(given: argparse.Namespace) -> int:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import shutil
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
@@ -19,10 +21,9 @@ from .planning import Wanted, plan
 from .rig import LACKING, Rig, draw_rig
 from .strength import Strength
 from .systems import SYSTEMS
-from .write import record, sealed_toml, write_dataset
+from .write import record, sealed_toml, write_at_once, write_dataset
 
 BATCH = 40  # cases simulated together
-MAX_TRIES = 3  # of one effect, before another takes its place
 
 
 @dataclass(frozen=True)
@@ -47,55 +48,47 @@ def draw(
     out: Path | str,
     *,
     sealed: Path | str | None = None,
-    system: str = "two_inertia",
-    repeats: float = 1.0,
-    unknown_share: float = 0.0,
-    pairs: float = 0.0,
-    faults: float = 0.0,
-    strengths: tuple[float, float] = (1.0, 6.0),
-    second: tuple[float, float] | None = None,
+    origin: Mapping[str, object] | None = None,
+    resumes: bool = False,
     jobs: int = 2,
     num_samples: int | None = None,
     step: float | None = None,
     progress: bool = True,
+    **options: Any,
 ) -> Path:
     """Draw `count` cases into `out`/cases and return `out`; about 70 % lack one effect, 15 % nothing, 15 % have wrong
-    parameters only.
+    parameters only, unless `options`, fields of `Options`, say otherwise.
 
-    `system`: a kind of `SYSTEMS`, or "mixed" for all of them.
-    The share `repeats` of the cases repeats an experiment; the others record another motion of the same kind instead.
-    The share `unknown_share` lacks an effect that the library does not have either. Of those that lack an effect the
-    share `pairs` lacks a second one. The share `faults` of all cases has a mistake in its logs.
-    The strength of an effect, its gap/noise, is drawn log-uniform between the two `strengths`, that of the
-    second one of a pair between the two of `second` (default: the same).
     The truth goes into the folder `sealed`, without it into `out`/sealed, from where it must be moved before `run`.
+    `origin`: what the truths say of the protocol, see `Protocol.origin`. Where it `resumes`, cases that were drawn
+    before stay, and the others are drawn.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
-    FileExistsError if one of the two folders exists.
+    FileExistsError if one of the two folders exists and drawing does not resume.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
-    planned = plan(
-        seed,
-        count,
-        system=system,
-        repeats=repeats,
-        unknown_share=unknown_share,
-        pairs=pairs,
-        faults=faults,
-        strengths=strengths,
-        second=second,
+    planned = plan(seed, count, **options)
+    if not (resumes and cases.exists()):
+        make_folders(cases, sealed)
+    sealed.mkdir(parents=True, exist_ok=True)
+    batches = [batch for batch in _batches(planned) if _missing(batch, sealed)]
+    work = partial(
+        _draw_batch, seed=seed, cases=cases, sealed=sealed, origin=origin, num_samples=num_samples, step=step
     )
-    make_folders(cases, sealed)
-    batches = _batches(planned)
-    work = partial(_draw_batch, seed=seed, cases=cases, sealed=sealed, num_samples=num_samples, step=step)
-    with tqdm(total=count, desc="draw", unit="case", disable=not progress) as bar:
+    done = count - sum(len(batch) for batch in batches)
+    with tqdm(total=count, initial=done, desc="draw", unit="case", disable=not progress) as bar:
         if jobs <= 1:
             for batch in batches:
                 bar.update(work(batch))
         else:
             with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-                for done in pool.map(work, batches):
-                    bar.update(done)
+                for drawn in pool.map(work, batches):
+                    bar.update(drawn)
     return Path(out)
+
+
+def _missing(batch: Sequence[tuple[int, Wanted]], sealed: Path) -> set[int]:
+    """Places of the cases without a truth, which is the last that a case gets."""
+    return {index for index, _ in batch if not (sealed / f"{name_of(index)}.toml").exists()}
 
 
 def _batches(planned: Sequence[Wanted]) -> list[list[tuple[int, Wanted]]]:
@@ -121,17 +114,22 @@ def _draw_batch(
     seed: int,
     cases: Path,
     sealed: Path,
+    origin: Mapping[str, object] | None,
     num_samples: int | None,
     step: float | None,
 ) -> int:
     settled = settle(batch, seed=seed, num_samples=num_samples)
     rigs, firsts = [case.rig for case in settled], [case.strengths[0] for case in settled]
+    missing = _missing(batch, sealed)  # of a batch that was interrupted, all rigs are simulated: the bits stay the same
     for case, wanted, run in zip(settled, (w for _, w in batch), record(rigs, firsts, step=step), strict=True):
+        if case.index not in missing:
+            continue
         name, rig = case.name, case.rig
         fault = draw_fault(rig, np.random.default_rng([seed, case.index + 1, 0, 2])) if wanted.has_fault else None
+        shutil.rmtree(cases / name, ignore_errors=True)
         write_dataset(rig, run, cases / name, name=name, description=description(rig), fault=fault)
-        text = sealed_toml(rig, *case.strengths, redrawn=case.redrawn, fault=fault)
-        (sealed / f"{name}.toml").write_text(text, encoding="utf-8")
+        text = sealed_toml(rig, *case.strengths, redrawn=case.redrawn, fault=fault, origin=origin)
+        write_at_once(sealed / f"{name}.toml", text)
     return len(batch)
 
 
@@ -175,8 +173,8 @@ def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int 
     system = SYSTEMS[wanted.system]
     effect = wanted.effect
     effects = unknown.named(system.causes) if wanted.kind == "unknown" else system.effects
-    if effect and tries >= MAX_TRIES:  # out of its reach on any of these rigs: another effect takes the place
-        effect = effects[(effects.index(effect) + tries // MAX_TRIES) % len(effects)]
+    if effect and tries >= wanted.tries:  # out of its reach on any of these rigs: another effect takes the place
+        effect = effects[(effects.index(effect) + tries // wanted.tries) % len(effects)]
     rig = draw_rig(
         np.random.default_rng([seed, index + 1, tries]),
         effect=effect,
@@ -185,6 +183,8 @@ def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int 
         num_samples=num_samples,
         has_repeats=wanted.has_repeats,
         strengths=wanted.strengths,
+        is_other_form=wanted.is_other_form,
+        met_within=wanted.met_within,
     )
     if not wanted.is_pair:
         return rig

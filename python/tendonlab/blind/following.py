@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -40,6 +41,7 @@ def follow(
     out: Path | str,
     *,
     sealed: Path | str,
+    origin: Mapping[str, object] | None = None,
     choice: Choice = "advised",
     step: float | None = None,
     num_samples: int | None = None,
@@ -48,10 +50,10 @@ def follow(
     """Draw the cases of a series again whose report ends in a tie that a motion decides, each with one more training
     experiment, into `out`/cases; return `out`.
 
-    `seed`, `count` and `drawn`: as `draw` had them. `reports`: what `run` wrote. `choice`: "advised" follows the motion
-    that the report puts first, "random" one of the generator's motions, as long as the advised one and without load.
-    The truths go into the new folder `sealed`. Raises ValueError where no report has such a tie, FileExistsError if a
-    folder exists.
+    `seed`, `count`, `origin` and `drawn`: as `draw` had them. `reports`: what `run` wrote. `choice`: "advised" follows
+    the motion that the report puts first, "random" one of the generator's motions, as long as the advised one and
+    without load. The truths go into the new folder `sealed`. Raises ValueError where no report has such a tie,
+    FileExistsError if a folder exists.
     """
     advised = _advised(Path(reports))
     batch = [(i, w) for i, w in enumerate(plan(seed, count, **drawn)) if name_of(i) in advised and not w.has_fault]
@@ -67,7 +69,8 @@ def follow(
         (more,) = record([_alone(followed)], [case.strengths[0]], step=step)
         write_dataset(case.rig, run, folder, name=name, description=words)
         add_experiment(followed, more, folder, name=name, description=words)
-        (sealed / f"{case.name}.toml").write_text(sealed_toml(case.rig, *case.strengths, redrawn=case.redrawn), "utf-8")
+        text = sealed_toml(case.rig, *case.strengths, redrawn=case.redrawn, origin=origin)
+        (sealed / f"{case.name}.toml").write_text(text, encoding="utf-8")
     return Path(out)
 
 

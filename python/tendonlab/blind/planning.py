@@ -2,23 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from typing import Any
 
 import numpy as np
 
 from . import unknown
+from .rig import MET_WITHIN, forms_of
+from .strength import TOLERANCE
 from .systems import SYSTEMS
 
 MIXED = "mixed"
+SHARES = (
+    "repeats", "unknown_share", "effect_share", "nothing_share", "pairs", "dominant", "faults", "other_form",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """What a series is to hold; the defaults are those of `draw`.
+
+    `system`: a kind of `SYSTEMS`, or "mixed" for all of them. `unknown_share`: share of the cases whose cause the
+    library lacks. Of the others the share `effect_share` lacks an effect and `nothing_share` lacks nothing; the rest
+    has wrong parameters only. `pairs`: share of the cases that lack an effect which lack a second one. `repeats`: share
+    of the cases that repeat an experiment. `faults`: share of the cases whose logs have a mistake.
+
+    `strengths`: range of the gap/noise of an effect. `second`: that of the second effect of a pair, None for the same.
+    `dominant`: share of the pairs that hide a weak effect, in the range `weak`, behind a strong one, in `strong`.
+    `other_form`: share of the single effects, and of the pairs, in another form than the library's, as far as effects
+    have one; None: half of those that have one, each by its own draw.
+
+    A rig is drawn again until the logarithm of its gap/noise is as wanted, within `met_within`; after `tries` rigs
+    another effect takes the place.
+    """
+
+    system: str = "two_inertia"
+    repeats: float = 1.0
+    unknown_share: float = 0.0
+    effect_share: float = 0.7
+    nothing_share: float = 0.15
+    pairs: float = 0.0
+    dominant: float = 0.0
+    faults: float = 0.0
+    other_form: float | None = None
+    strengths: tuple[float, float] = (1.0, 6.0)
+    second: tuple[float, float] | None = None
+    strong: tuple[float, float] = (20.0, 100.0)
+    weak: tuple[float, float] = (0.5, 5.0)
+    tries: int = 3
+    met_within: float = MET_WITHIN
+
+    def __post_init__(self) -> None:
+        """Raise ValueError if a share is none, if strengths are no range, and for another system."""
+        for name in SHARES:
+            share = getattr(self, name)
+            if share is not None and not 0.0 <= share <= 1.0:
+                raise ValueError(f"{name} = {share}: expected a share from 0 to 1")
+        if self.effect_share + self.nothing_share > 1.0 + 1e-9:
+            both = f"{self.effect_share} + {self.nothing_share}"
+            raise ValueError(f"effect_share + nothing_share = {both}: expected at most 1")
+        for name in ("strengths", "second", "strong", "weak"):
+            least, largest = getattr(self, name) or self.strengths
+            if not 0.0 < least < largest < np.inf:
+                raise ValueError(f"{name} = {least}, {largest}: expected two numbers, 0 < least < largest")
+        if self.system not in (*SYSTEMS, MIXED):
+            raise ValueError(f"system = {self.system!r}: expected one of {', '.join((*SYSTEMS, MIXED))}")
+        if self.tries < 1:
+            raise ValueError(f"tries = {self.tries}: expected at least 1")
+        if not TOLERANCE < self.met_within < np.inf:
+            raise ValueError(f"met_within = {self.met_within}: expected more than {TOLERANCE}, where the search stops")
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of rigs that are drawn."""
+        return tuple(SYSTEMS) if self.system == MIXED else (self.system,)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wanted:
     """A case to draw: its system, kind, the effect that its simulator lacks ("" for none, "unknown:bump" for a cause
     that the library lacks as well), whether it repeats an experiment, whether it lacks a second effect, and whether
-    its logs have a mistake; ranges of the gap/noise of its effect and of the second one.
+    its logs have a mistake; ranges of the gap/noise of its effect and of the second one. `is_other_form`: whether the
+    effect has another form than the library's, None where the rig draws that. `tries`, `met_within`: see `Options`.
     """
 
     system: str
@@ -29,83 +95,78 @@ class Wanted:
     has_fault: bool = False
     strengths: tuple[float, float] = (1.0, 6.0)
     second: tuple[float, float] = (1.0, 6.0)
+    is_other_form: bool | None = None
+    tries: int = 3
+    met_within: float = MET_WITHIN
 
 
-def plan(
-    seed: int,
-    count: int,
-    *,
-    system: str = "two_inertia",
-    repeats: float = 1.0,
-    unknown_share: float = 0.0,
-    pairs: float = 0.0,
-    faults: float = 0.0,
-    strengths: tuple[float, float] = (1.0, 6.0),
-    second: tuple[float, float] | None = None,
-) -> list[Wanted]:
+def plan(seed: int, count: int, **options: Any) -> list[Wanted]:
     """What every case is to be, shuffled; effects go round in turn, so that all appear once `count` allows it.
 
-    `pairs`: share of the cases that lack an effect which lack a second one. `faults`: share of all cases whose logs
-    have a mistake. The draws of repeats and mistakes change nothing else: the rigs of a seed are the same with and
-    without. `second`: strengths of second effects, those of the first ones unless given. Raises ValueError if
-    count < 1, if a share is none, if strengths are no range, and for another system.
+    `options`: fields of `Options`. The draws of repeats, pairs, forms and mistakes change nothing else: the rigs of a
+    seed are the same with and without. Raises ValueError if count < 1, and as `Options` does.
     """
     if count < 1:
         raise ValueError(f"count = {count}: expected at least 1")
-    shares = {"repeats": repeats, "unknown_share": unknown_share, "pairs": pairs, "faults": faults}
-    for name, share in shares.items():
-        if not 0.0 <= share <= 1.0:
-            raise ValueError(f"{name} = {share}: expected a share from 0 to 1")
-    second = strengths if second is None else second
-    for name, (least, largest) in (("strengths", strengths), ("second", second)):
-        if not 0.0 < least < largest < np.inf:
-            raise ValueError(f"{name} = {least}, {largest}: expected two numbers, 0 < least < largest")
-    if system not in (*SYSTEMS, MIXED):
-        raise ValueError(f"system = {system!r}: expected one of {', '.join((*SYSTEMS, MIXED))}")
-    repeated, faulty = _some(seed, 1, count=count, share=repeats), _some(seed, 4, count=count, share=faults)
-    kinds = _mixed_kinds if system == MIXED else partial(_kinds, system=system)
-    drawn = kinds(seed, count, unknown_share=unknown_share)
-    singles = [i for i, (_, kind, _) in enumerate(drawn) if kind == "effect"]
-    paired = {singles[k] for k in _some(seed, 3, count=len(singles), share=pairs)}
+    of = Options(**options)
+    repeated, faulty = (_some(seed, n, of=range(count), share=x) for n, x in ((1, of.repeats), (4, of.faults)))
+    drawn = _mixed_kinds(seed, count, of) if of.system == MIXED else _kinds(seed, count, system=of.system, of=of)
+    lacking = [i for i, (_, kind, _) in enumerate(drawn) if kind == "effect"]
+    pairs = _some(seed, 3, of=lacking, share=of.pairs)
+    dominant = _some(seed, 5, of=sorted(pairs), share=of.dominant)
+    other = _in_other_form(seed, {i: drawn[i] for i in lacking}, pairs, share=of.other_form)
     return [
         Wanted(
             system=name,
             kind=kind,
             effect=effect,
             has_repeats=i in repeated,
-            is_pair=i in paired,
+            is_pair=i in pairs,
             has_fault=i in faulty,
-            strengths=strengths,
-            second=second,
+            strengths=of.strong if i in dominant else of.strengths,
+            second=of.weak if i in dominant else of.second or of.strengths,
+            is_other_form=None if of.other_form is None else i in other,
+            tries=of.tries,
+            met_within=of.met_within,
         )
         for i, (name, kind, effect) in enumerate(drawn)
     ]
 
 
-def _some(seed: int, stream: int, *, count: int, share: float) -> set[int]:
-    """Places of a share of the cases."""
-    places = np.random.default_rng([seed, 0, stream]).permutation(count)
-    return set(places[: round(share * count)].tolist())
+def _in_other_form(
+    seed: int, lacking: Mapping[int, tuple[str, str, str]], pairs: set[int], *, share: float | None
+) -> set[int]:
+    """Places whose effect has another form: the `share` of the single ones, and of the pairs, as far as effects have
+    another form.
+    """
+    chosen: set[int] = set()
+    for stream, group in ((6, [i for i in lacking if i not in pairs]), (7, sorted(pairs))):
+        able = [i for i in group if len(forms_of(SYSTEMS[lacking[i][0]], lacking[i][2])) > 1]
+        wanted = round((share or 0.0) * len(group))
+        chosen |= _some(seed, stream, of=able, share=min(1.0, wanted / max(1, len(able))))
+    return chosen
 
 
-def _mixed_kinds(seed: int, count: int, *, unknown_share: float) -> list[tuple[str, str, str]]:
+def _some(seed: int, stream: int, *, of: Sequence[int], share: float) -> set[int]:
+    """A share of these places."""
+    chosen = np.random.default_rng([seed, 0, stream]).permutation(len(of))
+    return {of[k] for k in chosen[: round(share * len(of))]}
+
+
+def _mixed_kinds(seed: int, count: int, of: Options) -> list[tuple[str, str, str]]:
     """As many cases of each system, within one, in random order."""
-    names = list(SYSTEMS)
+    names = of.kinds
     order = [names[i % len(names)] for i in np.random.default_rng([seed, 0, 2]).permutation(count)]
-    queues = {
-        name: iter(_kinds(seed, order.count(name), system=name, unknown_share=unknown_share)) for name in set(order)
-    }
+    queues = {name: iter(_kinds(seed, order.count(name), system=name, of=of)) for name in set(order)}
     return [next(queues[name]) for name in order]
 
 
-def _kinds(seed: int, count: int, *, system: str, unknown_share: float) -> list[tuple[str, str, str]]:
-    """(system, kind, effect) of the cases of one system: of those without unknown cause 70 % lack an effect, 15 %
-    nothing.
-    """
-    draw, num_unknown = np.random.default_rng([seed, 0]), round(unknown_share * count)
+def _kinds(seed: int, count: int, *, system: str, of: Options) -> list[tuple[str, str, str]]:
+    """(system, kind, effect) of the cases of one system."""
+    draw, num_unknown = np.random.default_rng([seed, 0]), round(of.unknown_share * count)
     known = count - num_unknown
-    singles = min(known, max(1, round(0.7 * known)))
-    none = round(0.15 * known)
+    singles = min(known, max(1 if of.effect_share else 0, round(of.effect_share * known)))
+    none = min(known - singles, round(of.nothing_share * known))
     kinds = [("effect", effect) for effect in _in_turn(SYSTEMS[system].effects, singles, draw)] + [("none", "")] * none
     kinds += [("parameters_only", "")] * (known - len(kinds))
     kinds += [("unknown", cause) for cause in _in_turn(unknown.named(SYSTEMS[system].causes), num_unknown, draw)]

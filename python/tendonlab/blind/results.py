@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
+from tendonlab.diagnosis.answer.calibration import Calibration, calibration_of, shipped_content
 from tendonlab.rehearsal.tally import Share, share
 
 from .calibrating import Folders, Judged, judged
 from .oracle import shares_of_oracle
+from .reliability import Interval, interval_of_mean
 from .scoring import SURE, score
 
 ENOUGH = 0.95  # of what a diagnosis reaches that is told the effects
@@ -26,6 +29,14 @@ class Row(NamedTuple):
     quantity: str
     column: str
     among: Callable[[pd.DataFrame], pd.Series]
+
+
+class Mean(NamedTuple):
+    """A mean over `num` rigs, with its 95 % interval where there are enough of them."""
+
+    mean: float
+    num: int
+    ci95: Interval | None
 
 
 def _between(least: float, below: float = np.inf) -> Callable[[pd.DataFrame], pd.Series]:
@@ -65,10 +76,20 @@ ROWS = (
 class Results:
     """`cases`: one row per case of all series, as `Score.cases`; also whether an effect was `named`, or something
     unknown `claimed`, where nothing is missing, and whether the gap `shrunk` as much as with the effects told.
-    `judged`: the cases whose probabilities count."""
+    `judged`: the cases whose probabilities count; `content`: of the calibration.json that maps their evidence."""
 
     cases: pd.DataFrame
     judged: tuple[Judged, ...]
+    content: Mapping[str, Any] = field(default_factory=shipped_content, repr=False)
+
+    def map_of(self, *, repeats: bool) -> Calibration:
+        """The map from evidence to probability."""
+        return calibration_of(self.content, repeats=repeats)
+
+    @property
+    def map_is_shipped(self) -> bool:
+        """Whether it is the map that comes with this version."""
+        return self.content == shipped_content()
 
     @property
     def parts(self) -> dict[str, pd.DataFrame]:
@@ -87,23 +108,34 @@ class Results:
         systems = sorted(self.cases["system"].unique())
         return {s: [_count(part[part["system"] == s], row) for part in self.parts.values()] for s in systems}
 
-    def means(self) -> dict[str, list[tuple[float, int]]]:
-        """Means, each with its number of cases, without and with repeats; those of no case are left out."""
+    def means(self) -> dict[str, list[Mean]]:
+        """Means without and with repeats; those of no case are left out."""
 
-        def mean(column: str, least: float) -> list[tuple[float, int]]:
-            values = [part[column][_between(least)(part)].dropna() for part in self.parts.values()]
-            return [(float(of.mean()) if len(of) else float("nan"), len(of)) for of in values]
+        def mean(column: str, least: float) -> list[Mean]:
+            values = [part[column][_between(least)(part)].dropna().to_numpy(float) for part in self.parts.values()]
+            return [Mean(float(x.mean()) if x.size else float("nan"), x.size, interval_of_mean(x)) for x in values]
 
         of_all = {
             "probability of the true effect, its twins included, gap/noise ≥ 1": mean("true_probability", WEAK),
             "ranked first, a group of at most three counted as 1/size, gap/noise ≥ 1": mean("ranked_share", WEAK),
             "share of the effects' parameters whose 95 % interval holds the truth": mean("covered", 0.0),
         }
-        return {quantity: both for quantity, both in of_all.items() if any(num for _, num in both)}
+        return {quantity: both for quantity, both in of_all.items() if any(of.num for of in both)}
 
     def confusion(self) -> pd.DataFrame:
         """True verdicts in rows, told ones in columns: counts."""
         return pd.crosstab(self.cases["truth"], self.cases["verdict"])
+
+    def confused_effects(self) -> dict[str, tuple[int, dict[str, int]]]:
+        """Of each single effect that was not reported first everywhere: on how many rigs it was missing, and how often
+        something else was reported first, most frequent first. Where no effect was reported, the verdict counts."""
+        found: dict[str, tuple[int, dict[str, int]]] = {}
+        for effect, cases in self.single().groupby("effect"):
+            wrong = cases[cases["ranked_first"] < 1.0]
+            told = wrong["first"].where(wrong["first"] != "", wrong["verdict"])
+            if len(told):
+                found[str(effect)] = (len(cases), {str(name): int(n) for name, n in told.value_counts().items()})
+        return found
 
     def single(self) -> pd.DataFrame:
         """The cases with one missing effect of the library."""
@@ -123,17 +155,18 @@ def _count(cases: pd.DataFrame, row: Row) -> Share:
     return share(int(values.sum()), len(values))
 
 
-def results(folders: Folders, told: Folders = ()) -> Results:
+def results(folders: Folders, told: Folders = (), *, map_file: Path | None = None) -> Results:
     """The results of several series, each a folder of truths and one of reports; `told`: of some of them the truths
-    and what `tell` wrote. Raises ValueError as `score` and `judged` do, where no series is given, and where one was
-    told that is not given."""
+    and what `tell` wrote; `map_file`: another calibration.json than the shipped one. Raises ValueError as `score` and
+    `judged` do, where no series is given, and where one was told that is not given."""
     if not folders:
         raise ValueError("no series: expected at least one folder of truths with its folder of reports")
     oracles = {sealed.resolve(): reports for sealed, reports in told}
     if unknown := oracles.keys() - {sealed.resolve() for sealed, _ in folders}:
         raise ValueError(f"{min(unknown)}: expected the truths of one of the series, too")
     series = [_scored(sealed, reports, oracles.get(sealed.resolve())) for sealed, reports in folders]
-    return Results(cases=pd.concat(series), judged=tuple(judged(folders)))
+    content = json.loads(map_file.read_text(encoding="utf-8")) if map_file else shipped_content()
+    return Results(cases=pd.concat(series), judged=tuple(judged(folders)), content=content)
 
 
 def _scored(sealed: Path, reports: Path, told: Path | None) -> pd.DataFrame:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tendonlab.diagnosis.answer.calibration import shipped
+from tendonlab.diagnosis.answer.calibration import Calibration
 from tendonlab.rehearsal.curve import clopper_pearson
 from tendonlab.report.figures import Picture
 from tendonlab.report.numbers import number
@@ -23,10 +23,9 @@ NUM_BINS = 5  # of the stated probability
 LEAST_IN_BIN = 5  # answers, below which a share says nothing
 
 
-def reliability(ax: Axes, cases: Sequence[Judged]) -> None:
-    """Share of answers that came true over the probability that the shipped map states, with 95 % intervals; on the
+def reliability(ax: Axes, cases: Sequence[Judged], of: Calibration) -> None:
+    """Share of answers that came true over the probability that the map `of` states, with 95 % intervals; on the
     diagonal the probabilities are true. `cases`: all with repeats, or all without."""
-    of = shipped(repeats=cases[0].repeats)
     kinds = (("verdict", stated_verdicts(cases, of), "refitted"), ("effects", stated_effects(cases, of), "with_effect"))
     ax.plot([0, 1], [0, 1], color=MUTED, lw=0.8, ls=(0, (4, 2)))
     for shift, (name, stated, colour) in zip((-0.006, 0.006), kinds, strict=True):
@@ -39,7 +38,8 @@ def reliability(ax: Axes, cases: Sequence[Judged]) -> None:
         ax.errorbar(mean + shift, share, spread, label=f"{name} ({len(stated)})", **options)  # type: ignore[arg-type]
     tidy(ax, grid="both")
     ax.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), xlabel="Stated probability", ylabel="Share that came true")
-    ax.legend(loc="upper left")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="upper left")
 
 
 def _bins(stated: Sequence[tuple[float, bool]]) -> list[tuple[float, float, float, float]]:
@@ -102,7 +102,7 @@ def pictures(found: Results) -> list[Picture]:
             cases = [case for case in found.judged if case.repeats == repeats]
             ax.set_title("With repeats" if repeats else "Without repeats")
             if cases:
-                reliability(ax, cases)
+                reliability(ax, cases, found.map_of(repeats=repeats))
         num = found.single()["effect"].str.split(":").str[1].nunique()
         strong = Figure(figsize=(7.2, 1.2 + 0.3 * max(1, num)), layout="constrained")
         strengths(strong.subplots(), found)

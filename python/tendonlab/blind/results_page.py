@@ -7,16 +7,16 @@ from pathlib import Path
 
 import pandas as pd
 
-from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.rehearsal.tally import Share
 from tendonlab.version import version
 
-from .calibrating import Judged, by_system, results_on
-from .results import Results
+from .calibrating import by_system, results_on, spreads_on
+from .results import Mean, Results
 from .results_figures import pictures
 
 PAGE = "blind-results.md"
 FIGURES = "figures"
+NORMAL = 1.96  # standard deviations on either side hold 95 %
 LEAST_CASES = 5  # of a kind of rig, to tell how true its probabilities are
 
 
@@ -44,9 +44,9 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     yield "## Shares"
     yield _table(["quantity", *columns], [[q, *map(_share, both)] for q, both in found.shares().items()])
     means = found.means()
-    rows = [[q, *(f"{mean:.2f} (of {num} rigs)" if num else "–" for mean, num in both)] for q, both in means.items()]
-    if rows:
-        yield _table(["mean", *columns], rows)
+    if means:
+        yield "Means with 95 % intervals by bootstrap of the rigs; where all rigs have 0, or all 1, Clopper–Pearson."
+        yield _table(["mean", *columns], [[q, *map(_mean, both)] for q, both in means.items()])
     yield "## Verdicts"
     rows = [[name, *map(_share, both)] for name, both in found.by_system().items()]
     yield _table(["verdict right", *columns], rows)
@@ -55,34 +55,61 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     if len(found.single()):
         yield "## Strength of the missing effect"
         yield images["blind-strength"]
-    yield "## Probabilities"
-    yield images["blind-reliability"]
-    yield (
-        "How true the probabilities of the shipped map are. Each cell: share that came true; mean probability stated; "
-        "calibration error beyond what chance shows at this number; Spiegelhalter's z; reliability slope."
-    )
-    yield _table(["kind of rig", "cases", "verdicts", "effects"], list(_calibration(found.judged)))
+    confused = found.confused_effects()
+    if confused:
+        yield "## Effects reported in place of the true one"
+        yield "Single effects: the most probable effect where that is wrong; the verdict where no effect is reported."
+        yield _table(["missing effect", "reported first instead"], [_confused(n, *of) for n, of in confused.items()])
+    yield from _probabilities(found, images)
     yield "## Wrong answers"
     yield "A right effect in another form than the library's, found under `unknown_effect`, counts as right here."
     columns = ["case", "system", "repeats", "missing", "gap/noise", "verdict told", "selected"]
     yield _table(columns, [_miss(str(name), case) for name, case in found.misses().iterrows()])
 
 
-def _calibration(cases: Sequence[Judged]) -> Iterable[list[object]]:
+def _probabilities(found: Results, images: dict[str, str]) -> Iterable[str]:
+    yield "## Probabilities"
+    if not found.map_is_shipped:
+        yield "Here the probabilities are those of the fitted map; above they are those that the reports state."
+    yield images["blind-reliability"]
+    which = "shipped" if found.map_is_shipped else "fitted"
+    yield (
+        f"How true the probabilities of the {which} map are. Each cell: share that came true; mean probability stated; "
+        "calibration error beyond what chance shows at this number, with its 95 % interval (normal, spread by "
+        "bootstrap of the rigs); Spiegelhalter's z; reliability slope."
+    )
+    yield _table(["kind of rig", "cases", "verdicts", "effects"], list(_calibration(found)))
+
+
+def _calibration(found: Results) -> Iterable[list[object]]:
     for repeats in (False, True):
-        of = shipped(repeats=repeats)
-        mine = [case for case in cases if case.repeats == repeats]
+        of = found.map_of(repeats=repeats)
+        mine = [case for case in found.judged if case.repeats == repeats]
         for name, group in {"all": mine, **by_system(mine)}.items():
             if len(group) >= LEAST_CASES:
-                told = results_on(group, of)
+                told, spread = results_on(group, of), spreads_on(group, of)
                 title = f"{name}, {'with' if repeats else 'without'} repeats"
-                yield [title, len(group), *(_true(told[kind]) for kind in ("verdicts", "effects"))]
+                yield [title, len(group), *(_true(told[kind], spread[kind]) for kind in ("verdicts", "effects"))]
 
 
-def _true(told: dict[str, float]) -> str:
-    names = ("came true", "mean probability", "calibration error beyond chance", "z", "reliability slope")
-    digits = (2, 2, 3, 1, 2)
-    return "; ".join(f"{told[name]:.{n}f}" for name, n in zip(names, digits, strict=True)).replace("-", "−")
+def _true(told: dict[str, float], spread: float) -> str:
+    error = told["calibration error beyond chance"]
+    cells = [f"{told[name]:.2f}" for name in ("came true", "mean probability")]
+    cells += [f"{error:.3f} ({error - NORMAL * spread:.3f} to {error + NORMAL * spread:.3f})"]
+    cells += [f"{told['z']:.1f}", f"{told['reliability slope']:.2f}"]
+    return "; ".join(cells).replace("-", "−")
+
+
+def _confused(effect: str, num: int, told: dict[str, int]) -> list[object]:
+    wrong = ", ".join(f"{name} {count}" for name, count in told.items())
+    return [effect, f"{sum(told.values())} of {num}: {wrong}"]
+
+
+def _mean(of: Mean) -> str:
+    if not of.num:
+        return "–"
+    interval = f"{of.ci95[0]:.2f}–{of.ci95[1]:.2f}; " if of.ci95 else ""
+    return f"{of.mean:.2f} ({interval}of {of.num} rigs)"
 
 
 def _miss(name: str, case: pd.Series) -> list[object]:

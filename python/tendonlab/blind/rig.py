@@ -13,6 +13,7 @@ from .systems.effects import FORMS, FRICTION, LARGEST, SIGNED, draw_shape, frict
 
 LACKING = ("effect", "unknown")  # kinds of cases whose nominal simulator lacks something
 NOMINAL_SPREAD, PARAMETERS_ONLY_SPREAD = 0.12, 0.22
+MET_WITHIN = 0.18  # of log gap/noise: 20 %
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +24,7 @@ class Rig:
     `truth`: the rig without the effect. `shape`: the drawn numbers that fix the effect, except for its amplitude.
     `noise`: factor on the floor. `kind`: "effect", "unknown", "none" or "parameters_only". `loop`: kp, kd, limit.
     `second`: another effect that the simulator lacks, in the same functional form; its target and amplitude.
-    `outputs`: those that were measured.
+    `outputs`: those that were measured. `met_within`: how far log gap/noise may be from that of the target.
     `has_bounded_error`: nominal values are 10 to 20 % off, not normally drawn.
     """
 
@@ -47,6 +48,7 @@ class Rig:
     second: str = ""
     second_target: float = 0.0
     second_amplitude: float = 0.0
+    met_within: float = MET_WITHIN
 
     @property
     def has_repeats(self) -> bool:
@@ -82,18 +84,20 @@ def draw_rig(
     num_samples: int | None = None,
     has_repeats: bool = True,
     strengths: tuple[float, float] = (1.0, 6.0),
+    is_other_form: bool | None = None,
+    met_within: float = MET_WITHIN,
 ) -> Rig:
     """Draw a rig of one kind around the system's typical parameters (+-25 %).
 
     `strengths`: least and largest gap/noise of the effect. `excitation` None: drawn, rich twice as often as poor.
-    `num_samples` None: as many as the system's records take.
+    `num_samples` None: as many as the system's records take. `is_other_form` None: drawn.
     """
     truth = {n: x * (1.0 if n in system.exact else draw.uniform(0.75, 1.25)) for n, x in system.typical.items()}
     chosen = str(draw.choice(["rich", "rich", "poor"]))
     period = system.sample_times[0] if len(system.sample_times) == 1 else float(draw.choice(system.sample_times))
     size = num_samples or round(system.duration / period)
     loop = system.loop(truth, draw) if system.loop else {}
-    outputs, form = _outputs(system, effect, draw), _form(system, effect, draw)
+    outputs, form = _outputs(system, effect, draw), _form(system, effect, draw, is_other=is_other_form)
     recorded = excitation or chosen
     runs = system.session(draw, excitation=recorded, sample_time=period, num_samples=size, has_repeats=has_repeats)
     return Rig(
@@ -113,6 +117,7 @@ def draw_rig(
         target=float(np.exp(draw.uniform(*np.log(strengths)))),
         seed=int(draw.integers(2**31)),
         num_settle=min(round(SETTLE / period), size),  # short records, as tests make them, settle shortly
+        met_within=met_within,
     )
 
 
@@ -129,9 +134,10 @@ def forms_of(system: System, effect: str) -> tuple[str, ...]:
     return forms.get(effect, forms.get(effect.partition(":")[2], ("documented",)))
 
 
-def _form(system: System, effect: str, draw: np.random.Generator) -> int:
-    other, is_other = int(draw.integers(1, 3)), bool(draw.random() < 0.5)
-    return min(other, len(forms_of(system, effect)) - 1) if is_other else 0
+def _form(system: System, effect: str, draw: np.random.Generator, *, is_other: bool | None) -> int:
+    other, by_chance = int(draw.integers(1, 3)), bool(draw.random() < 0.5)
+    chosen = by_chance if is_other is None else is_other
+    return min(other, len(forms_of(system, effect)) - 1) if chosen else 0
 
 
 def effect_parameters(rig: Rig, amplitude: float) -> dict[str, float]:

@@ -33,7 +33,7 @@ PERIOD = 0.01  # s, of the samples that are compared
 NUDGE = 0.02  # finite difference in log parameters
 PRIOR_SD = 0.3  # of a log parameter
 SMALLEST = 2e-3  # amplitude
-TOLERANCE, PROMISE = 0.12, 0.18  # of log gap/noise: where the search stops, and what is promised (20 %)
+TOLERANCE = 0.12  # of log gap/noise: where the search stops
 NUM_LINEAR, NUM_EXACT = 4, 6
 RIVAL_AMPLITUDE = 0.1
 ORDER = 6  # of the autoregressive model of the floor
@@ -44,7 +44,8 @@ class Strength:
     """`gap_noise` reached at `amplitude`; `nominal_gap_noise`: before any refit; `floor`: rms noise of every
     output, SI.
 
-    `limited`: the physical limit of the amplitude was met before the target; `met`: the target was, within 20 %.
+    `limited`: the physical limit of the amplitude was met before the target; `met`: the target was, within 20 % or
+    what the rig allows.
     `separation`: nats that tell the effect from each of its rivals, by name.
     """
 
@@ -108,6 +109,7 @@ class _Search:
         self.has_effect = np.array([rig.kind in LACKING for rig in rigs])
         self.largest = np.array([largest_amplitude(rig) if rig.kind in LACKING else 0.0 for rig in rigs])
         self.target = np.log([rig.target for rig in rigs])
+        self.met_within = [rig.met_within for rig in rigs]
         self.amplitude = np.where(self.has_effect, np.minimum(0.3, self.largest), 0.0)
         self.gap = np.zeros(len(rigs))
         self.last: tuple[Array, Array] | None = None
@@ -148,7 +150,7 @@ class _Search:
             nominal_gap_noise=float(before),
             floor=floor,
             limited=bool(self._at_limit()[row]),
-            met=bool(not self.has_effect[row] or abs(np.log(max(gap, 1e-6)) - self.target[row]) < PROMISE),
+            met=bool(not self.has_effect[row] or abs(self._off()[row]) < self.met_within[row]),
             separation=separation,
         )
 

@@ -150,13 +150,25 @@ def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
     return lines
 
 
+def write_at_once(path: Path, text: str) -> None:
+    """Write a file that appears when all of it is there."""
+    unfinished = path.with_name(f"{path.name}.unfinished")
+    unfinished.write_text(text, encoding="utf-8")
+    unfinished.replace(path)
+
+
 def sealed_toml(
-    rig: Rig, strength: Strength, *second: Strength, redrawn: Sequence[str] = (), fault: Fault | None = None
+    rig: Rig,
+    strength: Strength,
+    *second: Strength,
+    redrawn: Sequence[str] = (),
+    fault: Fault | None = None,
+    origin: Mapping[str, object] | None = None,
 ) -> str:
     """Text of the truth file: effects, verdict, accept, [truth] parameters, [draw] how the case came about.
 
     `second`: of the second effect, where the rig has one. `fault`: a mistake in the logs, which is then all that can be
-    found.
+    found. `origin`: the protocol that the case was drawn by.
     """
     verdict = "data_fault" if fault else VERDICTS.get(rig.kind, rig.kind)
     separation = {name: nats for each in (strength, *second) for name, nats in each.separation.items()}
@@ -175,6 +187,8 @@ def sealed_toml(
         "[draw]",
         *_table(_drawn(rig, strength, redrawn) | _drawn_second(*second)),
     ]
+    if origin:
+        lines += ["", "[protocol]", *_table(origin)]
     if fault:
         lines += ["", "[fault]", *_table(fault.to_dict())]
     if separation:

@@ -83,9 +83,14 @@ def shipped_content() -> dict[str, Any]:
     return dict(json.loads((files("tendonlab.diagnosis.answer") / FILE).read_text(encoding="utf-8")))
 
 
+def calibration_of(content: Mapping[str, Any], *, repeats: bool) -> Calibration:
+    """The map that the content of a calibration.json holds."""
+    given = content["with repeats" if repeats else "without repeats"]
+    maps = {name: Tempering(**given["map"][name]) for name in ("verdicts", "effects")}
+    return Calibration(**maps, systems=tuple(given["confirmed"]), least_runs=given["least runs"])
+
+
 @cache
 def shipped(*, repeats: bool) -> Calibration:
     """The map that comes with this version."""
-    given = shipped_content()["with repeats" if repeats else "without repeats"]
-    maps = {name: Tempering(**given["map"][name]) for name in ("verdicts", "effects")}
-    return Calibration(**maps, systems=tuple(given["confirmed"]), least_runs=given["least runs"])
+    return calibration_of(shipped_content(), repeats=repeats)
