@@ -25,6 +25,7 @@ class Rig:
     `second`: another effect that the simulator lacks, in the same functional form; its target and amplitude.
     `outputs`: those that were measured.
     `has_bounded_error`: nominal values are 10 to 20 % off, not normally drawn.
+    `recording`: which recording of the same rig this is; each has noise and scatter of its own.
     """
 
     system: System
@@ -47,6 +48,7 @@ class Rig:
     second: str = ""
     second_target: float = 0.0
     second_amplitude: float = 0.0
+    recording: int = 0
 
     @property
     def has_repeats(self) -> bool:
