@@ -124,6 +124,7 @@ def test_predicted_and_realised_shares(folders: tuple[Path, Path]) -> None:
     assert result.mean == pytest.approx(0.0, abs=0.1)
     assert result.effects["realised %"].to_dict() == {BRISTLE: 0.0, OFFSET: 100.0}
     assert result.effects["points"].to_dict() == pytest.approx({BRISTLE: 50.0, OFFSET: -50.0}, abs=0.1)
+    assert result.repeats["realised"].to_dict() == {True: "2 of 4"}
     assert result.sizes["predicted %"].loc[0.3] < 15 < 85 < result.sizes["predicted %"].loc[3.0]
     assert "predicted less realised, over 1 designs: " in str(result)
     assert result.to_dict()["format"] == "tendonlab-score/1"  # a diagnosis must not read it

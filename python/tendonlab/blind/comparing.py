@@ -26,12 +26,13 @@ Folders = Sequence[tuple[Path, Path]]  # truths, and what `rehearse` wrote
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """`cases`: one row per realised rig. `designs`, `effects`, `sizes`: shares by design, effect and gap over noise of
-    the rehearsal; `pooled`: of all. `mean`, `error`: mean over designs of predicted less realised share, in points, and
-    its standard error."""
+    """`cases`: one row per realised rig. `designs`, `repeats`, `effects`, `sizes`: shares by design, by whether it
+    repeats an experiment, by effect and by gap over noise of the rehearsal; `pooled`: of all. `mean`, `error`: mean
+    over designs of predicted less realised share, in points, and its standard error."""
 
     cases: pd.DataFrame
     designs: pd.DataFrame
+    repeats: pd.DataFrame
     effects: pd.DataFrame
     sizes: pd.DataFrame
     pooled: pd.DataFrame
@@ -39,15 +40,16 @@ class Comparison:
     error: float
 
     def __str__(self) -> str:
-        tables = {"by design": self.designs, "by effect": self.effects, "by size": self.sizes, "pooled": self.pooled}
-        blocks = [f"{title}\n{table.to_string(float_format='%.3g')}" for title, table in tables.items()]
+        tables = {f"by {name[:-1]}": getattr(self, name) for name in ("designs", "effects", "sizes")}
+        tables |= {"by whether an experiment repeats": self.repeats, "pooled": self.pooled}
+        blocks = [f"{title}\n{table.to_string(float_format='%.1f')}" for title, table in tables.items()]
         over = f"predicted less realised, over {len(self.designs)} designs: {self.mean:+.1f} points"
         error = "" if np.isnan(self.error) else f" (standard error {self.error:.1f})"
         return "\n\n".join([*blocks, over + error])
 
     def to_dict(self) -> dict[str, object]:
         """Plain types; it tells the truth, and says so at its beginning."""
-        names = ("designs", "effects", "sizes", "pooled", "cases")
+        names = ("designs", "repeats", "effects", "sizes", "pooled", "cases")
         tables = {name: getattr(self, name).reset_index().to_dict(orient="records") for name in names}
         found: dict[str, object] = plain({"mean": self.mean, "error": self.error, **tables})
         return {"format": "tendonlab-score/1", "of": "rehearsals", **found}
@@ -70,6 +72,7 @@ def compare(folders: Folders) -> Comparison:
     return Comparison(
         cases=cases,
         designs=designs,
+        repeats=_shares(cases, "repeats"),
         effects=_shares(cases, "effect"),
         sizes=_shares(cases, "gap"),
         pooled=_shares(cases.assign(all="all"), "all"),
