@@ -10,6 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from .rehearsed_commands import add_rehearsed
+
 
 def add_parser(subparsers: Any) -> None:
     """Add `blind` to the subparsers of the command line; the chosen verb is called as `given.run(given)` and returns
@@ -25,7 +27,9 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
         return 0
 
     parser.set_defaults(run=explain)
-    verbs = parser.add_subparsers(dest="verb", metavar="draw|run|follow|score|tell|results|calibrate|campaign")
+    verbs = parser.add_subparsers(
+        dest="verb", metavar="draw|run|follow|score|tell|results|calibrate|campaign|rehearse|compare"
+    )
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
     drawing.add_argument("out", type=Path, metavar="OUT")
@@ -59,6 +63,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     _add_results(verbs)
     _add_calibrate(verbs)
     _add_campaign(verbs)
+    add_rehearsed(verbs, _verb)
 
 
 def _add_pace(parser: argparse.ArgumentParser) -> None:

@@ -55,7 +55,7 @@ def _scale(rig: Rig, values: Mapping[str, float], noisy: bool) -> Array:
 
 
 def _scatter(rig: Rig) -> Array:
-    draw = np.random.default_rng([rig.seed, 1])
+    draw = np.random.default_rng([rig.seed, 1, rig.recording])
     return np.asarray(1.0 + RUN_TO_RUN * draw.standard_normal((len(rig.system.slots), len(rig.experiments))))
 
 
@@ -93,7 +93,7 @@ def scene_of(rigs: Sequence[Rig], *, is_noisy: Sequence[bool]) -> Scene:
 
 def _noise(rig: Rig) -> Array:
     """White and coloured reading noise, (outputs, num_samples, num_experiments)."""
-    draw, system = np.random.default_rng([rig.seed, 2]), rig.system
+    draw, system = np.random.default_rng([rig.seed, 2, rig.recording]), rig.system
     size = (len(system.outputs), rig.num_settle + rig.num_samples, len(rig.experiments))
     white = draw.standard_normal(size) * system.column("white")[:, None, None]
     shocks = draw.standard_normal(size)

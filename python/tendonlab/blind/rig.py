@@ -26,6 +26,7 @@ class Rig:
     `second`: another effect that the simulator lacks, in the same functional form; its target and amplitude.
     `outputs`: those that were measured. `met_within`: how far log gap/noise may be from that of the target.
     `has_bounded_error`: nominal values are 10 to 20 % off, not normally drawn.
+    `recording`: which recording of the same rig this is; each has noise and scatter of its own.
     """
 
     system: System
@@ -49,6 +50,7 @@ class Rig:
     second_target: float = 0.0
     second_amplitude: float = 0.0
     met_within: float = MET_WITHIN
+    recording: int = 0
 
     @property
     def has_repeats(self) -> bool:

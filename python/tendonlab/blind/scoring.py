@@ -81,7 +81,7 @@ def score(sealed: Path | str, reports: Path | str) -> Score:
     drawn = {path.stem for path in sealed.glob("*.toml")}
     for name in sorted({*told, *drawn}):
         truth, verdict = truth_of(sealed, name), told.get(name, {"verdict": "failed"})
-        rows.append({"case": name, **_facts(truth), **_compare(truth, _report(reports, name, verdict))})
+        rows.append({"case": name, **_facts(truth), **_compare(truth, report_of(reports, name, verdict))})
     if not rows:
         raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
     return _tables(pd.DataFrame(rows).set_index("case"))
@@ -98,7 +98,8 @@ def truth_of(sealed: Path, name: str) -> dict[str, Any]:
     return truth
 
 
-def _report(reports: Path, name: str, verdict: Mapping[str, Any]) -> dict[str, Any]:
+def report_of(reports: Path, name: str, verdict: Mapping[str, Any]) -> dict[str, Any]:
+    """The report on a case. Raises ValueError where it is not the one that was hashed."""
     if verdict["verdict"] == "failed":
         return {"verdict": "failed", "effects": [], "selected": []}
     path = reports / name / REPORT

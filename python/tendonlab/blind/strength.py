@@ -70,6 +70,17 @@ def tune(rigs: Sequence[Rig]) -> list[Strength]:
     return [out[i] for i in range(len(rigs))]
 
 
+def measured(rigs: Sequence[Rig], amplitudes: Sequence[float]) -> list[Strength]:
+    """Strength of the effect of every rig at a given amplitude; the rigs are alike, and all lack an effect."""
+    tuner, search = _Tuner(rigs), _Search(rigs)
+    search.amplitude = np.array(amplitudes, dtype=float)
+    tuner.start()
+    tuner.linear(search.amplitude)  # begins the refit
+    search.learn(tuner.exact(search.amplitude), search.everyone)
+    before, rivals = tuner.nominal_gap(), separations(tuner)
+    return [search.strength(i, before=before[i], floor=tuner.floor[i], separation=rivals[i]) for i in range(len(rigs))]
+
+
 def _measure(rigs: Sequence[Rig]) -> list[Strength]:
     """Floor and nominal gap of rigs that lack nothing."""
     tuner, search = _Tuner(rigs), _Search(rigs)

@@ -105,7 +105,7 @@ def dataset_toml(rig: Rig, *, name: str, description: str) -> str:
     lines += ['axis = "rotary"', f"nominal_effects = {_toml(list(nominal_effects(rig)))}", "", "[system.parameters]"]
     lines += [
         f"{key} = {{ value = {_toml(value)}, sd = {_toml(sd)} }}"
-        for key, (value, sd) in _stated(rig, nominal_values(rig)).items()
+        for key, (value, sd) in stated(rig, nominal_values(rig)).items()
     ]
     if rig.has_controller:
         lines += _controller_lines(rig)
@@ -120,7 +120,7 @@ def dataset_toml(rig: Rig, *, name: str, description: str) -> str:
     return "\n".join(lines + [line for e in rig.experiments for line in _experiment_lines(rig, e)]) + "\n"
 
 
-def _stated(rig: Rig, values: Mapping[str, Value]) -> dict[str, Value]:
+def stated(rig: Rig, values: Mapping[str, Value]) -> dict[str, Value]:
     """`values` under the names that a dataset gives the parameters."""
     return {rig.system.contract.get(name, name): value for name, value in values.items()}
 
@@ -145,7 +145,7 @@ def _experiment_lines(rig: Rig, experiment: Experiment) -> list[str]:
         lines.append(f"repeat = {_toml(experiment.repeat)}")
     lines.append(f"start = {_toml(experiment.start)}")
     if experiment.add:
-        added = _stated(rig, experiment.add)
+        added = stated(rig, experiment.add)
         lines.append("add = { " + ", ".join(f"{key} = {_toml(value)}" for key, value in added.items()) + " }")
     return lines
 
@@ -182,7 +182,7 @@ def sealed_toml(
         f"accept = {_toml(accept)}",
         "",
         "[truth]",
-        *_table(_stated(rig, truth)),
+        *_table(stated(rig, truth)),
         "",
         "[draw]",
         *_table(_drawn(rig, strength, redrawn) | _drawn_second(*second)),
