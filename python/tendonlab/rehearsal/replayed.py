@@ -48,7 +48,7 @@ def leaves(rigs: SimulatedRig, floor: Floor, random: np.random.Generator) -> flo
 
 
 def _telling(rigs: SimulatedRig) -> SimulatedRig:
-    """The rigs in the experiments that tell the floor: those that repeat, else some of those that a model is fitted to."""
+    """The rigs in the experiments that tell the floor: those that repeat, else some that a model is fitted to."""
     if rigs.noise.repeated:
         told = tuple(replace(e, split="train") for e in rigs.runs if e.repeat is not None)
     else:
