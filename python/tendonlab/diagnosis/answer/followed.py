@@ -38,7 +38,7 @@ class Seen(NamedTuple):
 
     def at(self, port: int, quantity: str) -> np.ndarray:
         """One quantity at one port."""
-        return np.asarray(self.run["ports"])[port, PORT_QUANTITIES.index(quantity)][self.kept]
+        return np.asarray(self.run["ports"][port][PORT_QUANTITIES.index(quantity)][self.kept])
 
     def since_start(self) -> np.ndarray:
         """Time since the experiment began, s."""

@@ -15,7 +15,7 @@ from tendonlab.diagnosis.answer.plan import Plan
 from tendonlab.diagnosis.search.delays import twin_delays
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.fitted import Fitted, Marginal, solved
+from tendonlab.fitting.fitted import Fitted, Marginal, Run, solved
 from tendonlab.fitting.noise import Floor
 from tendonlab.fitting.problem import pose
 from tendonlab.simulation.prepare import Replay
@@ -81,19 +81,24 @@ def contradiction(r: np.ndarray, j: np.ndarray, prior: np.ndarray) -> float:
 
 
 def _separation(case: Case, floor: Floor, first: Fitted, second: Fitted, plan: Plan) -> float:
-    """What the plan is expected to bring whichever of the two is true: the lesser of both gains."""
-    gains = (
-        _gain(case, floor, true, other, plan.played(case, true.system).log)
-        for true, other in ((first, second), (second, first))
-    )
-    return min(gains)
+    """What the plan is expected to bring whichever of the two is true: the lesser of both gains, or the first
+    where that is too little already."""
+    gain = _gain(case, floor, first, second, plan.played(case, first.system).log)
+    if gain <= SEPARATES:
+        return gain
+    return min(gain, _gain(case, floor, second, first, plan.played(case, second.system).log))
 
 
 def _gain(case: Case, floor: Floor, true: Fitted, other: Fitted, experiment: Experiment) -> float:
     """Nats that the diagnosis is expected to count against the `other` where `true` made the log: r is what the other
-    leaves more, with its posterior as the prior of its parameters."""
+    leaves more, with its posterior as the prior of its parameters. In free run a model makes its own log again."""
     rig, under = case.playing(experiment), replace(floor, sd=other.levels.tolist())
-    (left,), (own,) = (pose(rig, under, of.system, added=of.added).linearise().runs for of in (other, true))
+
+    def run(of: Fitted) -> Run:
+        return pose(rig, under, of.system, added=of.added).linearise().runs[0]
+
+    left = run(other)
     marginal = Marginal.of(left, other.shares)
-    r, moving = marginal.residual(left.residual - own.residual), ~np.array(other.at_bound, dtype=bool)
+    more = left.residual if case.replay.kind == "free" else left.residual - run(true).residual
+    r, moving = marginal.residual(more), ~np.array(other.at_bound, dtype=bool)
     return contradiction(r, marginal.jacobian[:, moving], other.precision[np.ix_(moving, moving)])
