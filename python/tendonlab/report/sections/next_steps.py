@@ -55,4 +55,7 @@ def _explanation(name: str, kind: str) -> str:
     """An effect, or a coordinate that the errors may follow."""
     if ":" in name:
         return phrase(name, kind)
-    return f"errors that follow {'' if name == 'time' else 'the '}{coordinate_words(name, kind)}"
+    coordinate = coordinate_words(name, kind)
+    if coordinate.endswith(" history"):
+        return f"errors that follow the way of the {coordinate.removesuffix(' history')} since its last reversal"
+    return f"errors that follow {'' if name == 'time' else 'the '}{coordinate}"
