@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ def as_logged(fitter: Fitter) -> Driven:
     """The inputs of the first training experiment again."""
     log = fitter.case.experiments[fitter.case.train[0]]
     inputs = {n: np.interp(instants(), log.time, log.data[n]) for n in ("input_torque", "input_velocity")}
-    return Driven("as logged", inputs)
+    return Driven("as logged", inputs, fitter.case.train[0])
 
 
 def steepest(values: np.ndarray, rate: float) -> float:
@@ -92,6 +93,20 @@ def test_advised_inputs_separate_a_tie_better_than_the_first_experiment_again(fi
 def test_inputs_that_lead_an_output_out_of_its_range_are_not_proposed(fitter: Fitter) -> None:
     far = as_logged(fitter)
     with pytest.raises(NumericalError, match="output_torque would leave the range that the logs show"):
-        Driven("far", {**far.inputs, "input_torque": 30.0 * far.inputs["input_torque"]}).played(
+        Driven("far", {**far.inputs, "input_torque": 30.0 * far.inputs["input_torque"]}, 0).played(
             fitter.case, fitter.case.system
         )
+
+
+def test_conditions_of_other_logs_are_proposed_and_stated(fitter: Fitter) -> None:
+    runs = list(fitter.case.experiments)
+    runs[2] = replace(runs[2], add={"wrap_angle": -1.8})
+    case = replace(fitter.case, experiments=tuple(runs))
+    *usual, other = drives(case)
+    assert other.words.endswith("at a wrap angle of 2.4 rad")
+    assert other.stated(case) == {"add": {"wrap_angle": -1.8}}
+    assert [plan.stated(case) for plan in usual] == [{}] * len(usual)
+    freer, bent = (next(p for p in (plan,)).played(case, case.system).log for plan in (other, usual[4]))
+    assert freer.add == {"wrap_angle": -1.8}
+    torque = [log.data["output_torque"].to_numpy() for log in (freer, bent)]
+    assert np.max(np.abs(torque[0] - torque[1])) > 0.1  # less friction over less wrap

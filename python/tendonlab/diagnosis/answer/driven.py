@@ -29,14 +29,16 @@ LOADED = 0.9  # of the range of a load that is used: single samples may have bee
 
 @dataclass(frozen=True)
 class Driven:
-    """Every input that drives the rig, SI, at `instants()`."""
+    """Every input that drives the rig, SI, at `instants()`. `like`: index of the experiment whose conditions hold."""
 
     words: str
     inputs: Mapping[str, np.ndarray]
+    like: int
 
-    def added(self, system: System) -> dict[str, float]:
-        """Nothing: loads are inputs."""
-        return {}
+    def stated(self, case: Case) -> dict[str, dict[str, float]]:
+        """The conditions of the experiment that it is like."""
+        like = case.experiments[self.like]
+        return {key: dict(given) for key, given in (("add", like.add), ("conditions", like.conditions)) if given}
 
     def reference(self, case: Case) -> pd.DataFrame:
         """`t` in s, and the inputs as the logs have them: their columns and units."""
@@ -47,11 +49,12 @@ class Driven:
     def played(self, case: Case, of: System, *, ports: bool = False) -> Played:
         """What a rig that `of` is would do and log, begun where the first training experiment began. Raises
         NumericalError where an output would leave the range that the logs show."""
-        like = case.experiments[case.train[0]]
+        like, held = case.experiments[case.train[0]], case.experiments[self.like]
         time = np.arange(0.0, instants()[-1], float(np.median(np.diff(like.time))))
         columns = {name: np.full(len(time), _first(like.data[name])) for name in like.data.columns}
         columns |= {name: np.interp(time, instants(), values) for name, values in self.inputs.items()}
-        planned = replace(like, name="next", data=pd.DataFrame(columns, index=time), repeat=None, averaged=False)
+        there = replace(like, conditions=held.conditions, add=held.add, repeat=None, averaged=False)
+        planned = replace(there, name="next", data=pd.DataFrame(columns, index=time))
         run = case.playing(planned).run(0, of, ports=ports)
         made = dict(zip(case.outputs, run["outputs"], strict=True))
         _require_seen(case, made)
@@ -61,28 +64,59 @@ class Driven:
 
 def drives(case: Case, *, rests: bool = False) -> list[Driven]:
     """Reversals at three speeds, a sweep and micro motion of the inputs that move the rig, other inputs held; and
-    reversals under loads that change slowly or with the motion. `rests`: also reversals after a rest."""
+    reversals under loads that change slowly or with the motion. `rests`: also reversals after a rest; else also the
+    last full reversals under the other conditions of the training experiments."""
     given = [_Channel.of(case, row) for row in case.system.info.inputs if _is_logged(case, row)]
     varying = [one for one in given if one.reach.travel > 0]
     moved = [one for one in varying if one.row.dimension in (*PLACES, *SPEEDS)]
     moved = moved or [one for one in varying if one.row.required]
     loads = [one for one in varying if one not in moved and not one.row.limit and one.row.dimension != "ratio"]
-    return list(_combined(moved, loads, [one for one in given if one not in moved], rests)) if moved else []
+    if not moved:
+        return []
+    shapes, others = [_shapes(one, rests) for one in moved], [one for one in given if one not in moved]
+    made = [Driven(said, inputs, case.train[0]) for said, inputs in _combined(moved, loads, others, shapes)]
+    full = [plan for plan in made if plan.words.startswith(shapes[0][FULL].words)]
+    return made + ([] if rests else [_under(case, full[min(1, len(full) - 1)], i) for i in _other_conditions(case)])
 
 
-def _combined(moved: list[_Channel], loads: list[_Channel], others: list[_Channel], rests: bool) -> Iterator[Driven]:
+def _other_conditions(case: Case) -> list[int]:
+    """The first training experiment under each set of conditions but that of the very first."""
+    found: dict[str, int] = {}
+    for i in case.train:
+        found.setdefault(repr(sorted(_conditions(case, i).items())), i)
+    return list(found.values())[1:]
+
+
+def _conditions(case: Case, i: int) -> dict[str, float]:
+    """Parameters of the rig under the conditions of an experiment, where these change any."""
+    e, usual = case.experiments[i], case.system.parameters
+    there = {name: e.conditions.get(name, usual.get(name, 0.0)) + e.add.get(name, 0.0) for name in e.conditions | e.add}
+    return {name: value for name, value in there.items() if name in usual and value != usual[name]}
+
+
+def _under(case: Case, plan: Driven, i: int) -> Driven:
+    """The plan under the conditions of experiment i."""
+    changed = _conditions(case, i)
+    values = (f"{words(n)} of {v:.3g} {unit_text(case.system.unit(n))}".rstrip() for n, v in changed.items())
+    return replace(plan, words=f"{plan.words}, at a {listing(values)}" if changed else plan.words, like=i)
+
+
+def _combined(
+    moved: list[_Channel], loads: list[_Channel], others: list[_Channel], shapes: list[list[Motion]]
+) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
+    """Words and inputs of each plan."""
     held = {one.row.name: one.along(one.still) for one in others}
     slowly = {one.row.name: one.along(one.swept(np.sin(2 * np.pi * instants() / DURATION))) for one in loads}
     place = listing(one.place for one in loads)
-    for k, together in enumerate(zip(*(_shapes(one, rests) for one in moved), strict=True)):  # what moves a rig does so
+    for k, together in enumerate(zip(*shapes, strict=True)):  # what moves a rig does so
         said = together[0].words
         moving = {one.row.name: one.along(motion.path) for one, motion in zip(moved, together, strict=True)}
-        yield Driven(said, held | moving)
+        yield said, held | moving
         if loads and k in (SLOWEST, FULL):
-            yield Driven(f"{said} while the {place} slowly goes through its range", held | moving | slowly)
+            yield f"{said} while the {place} slowly goes through its range", held | moving | slowly
         if loads and k == FULL:
             with_it = {one.row.name: one.along(one.swept(_unit(together[0].path))) for one in loads}
-            yield Driven(f"{said} while the {place} follows the motion", held | moving | with_it)
+            yield f"{said} while the {place} follows the motion", held | moving | with_it
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,11 @@ class Looped:
         """What its load adds to the parameters of `system`."""
         return self.motion.payload_of(system)
 
+    def stated(self, case: Case) -> dict[str, dict[str, float]]:
+        """Its load."""
+        added = self.added(case.system)
+        return {"add": added} if added else {}
+
     def reference(self, case: Case) -> pd.DataFrame:
         """What the rig is to follow, as its logs have it: `t` in s, and the column of the controller's reference, else
         of the output, in its unit."""

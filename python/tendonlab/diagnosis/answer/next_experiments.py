@@ -68,8 +68,7 @@ def ranked(
 
 def _row(plan: Plan, case: Case, separates: list[str], nats: float) -> dict[str, Any]:
     said = {"description": plan.words, "separates": separates, "expected_gain": round(nats, 1)}
-    added = plan.added(case.system)
-    return said | ({"add": added} if added else {}) | {"reference": plan.reference(case)}
+    return said | plan.stated(case) | {"reference": plan.reference(case)}
 
 
 def contradiction(r: np.ndarray, j: np.ndarray, prior: np.ndarray) -> float:

@@ -26,8 +26,8 @@ class Plan(Protocol):
     def words(self) -> str:
         """The experiment in a report."""
 
-    def added(self, system: System) -> dict[str, float]:
-        """What its load adds to the parameters of `system`."""
+    def stated(self, case: Case) -> dict[str, dict[str, float]]:
+        """What the experiment states beside its signals, as `add` and `conditions` of a dataset do."""
 
     def reference(self, case: Case) -> pd.DataFrame:
         """What is to be played: `t` in s, and columns as the logs have them."""
