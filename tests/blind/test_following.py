@@ -65,3 +65,17 @@ def test_only_a_tie_that_a_motion_decides_is_followed(gain: float, tied: bool, t
     with pytest.raises(ValueError, match="expected a report with a tie that a motion decides, found none"):
         followed(told, tmp_path)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("more", [{"w": PATH}, {}])
+def test_inputs_of_a_rig_without_a_path_and_motions_for_unknown_causes_are_not_followed(
+    more: dict[str, np.ndarray], tmp_path: Path
+) -> None:
+    told = reports(tmp_path / "told", "case-002")
+    pd.DataFrame({"t": TIME, "u": PATH, **more}).to_csv(told / "case-002" / "next-1.csv", index=False)
+    if not more:
+        report = json.loads((told / "case-002" / "report.json").read_text())
+        report["next_experiments"][0]["separates"] = ["joint_position", "time"]
+        (told / "case-002" / "report.json").write_text(json.dumps(report))
+    with pytest.raises(ValueError, match="expected a report with a tie that a motion decides, found none"):
+        followed(told, tmp_path)

@@ -13,8 +13,9 @@ import pytest
 from integrate.rig import joint
 from tendonlab import _core
 from tendonlab.diagnosis.answer import motions, next_experiments
+from tendonlab.diagnosis.answer.looped import Loop, Looped
 from tendonlab.diagnosis.answer.motions import DURATION, EASE, RATE, Motion
-from tendonlab.diagnosis.answer.next_experiments import Loop, _gain, _logged, _loop, _run, _separation, advise
+from tendonlab.diagnosis.answer.next_experiments import SEPARATES, _gain, _separation, advise
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -22,19 +23,19 @@ from tendonlab.papers import s2
 from tendonlab.simulation.prepare import prepare
 
 LOOP = Loop(400.0, 40.0, "joint_angle")
+LOOP_OF_CABLES = Loop(20.0, 1.0, "joint_angle")
 
 
 def case(kind: str = "injection", controller: Any = None, **changes: Any) -> Any:
     replay = SimpleNamespace(**{"kind": kind, "kp": 3.0, "kd": 0.5, "output": "joint_angle", **changes})
     spec = SimpleNamespace(column="angle (deg)", unit="deg", si_unit="rad")
     dataset = SimpleNamespace(signals={"joint_angle": spec})
-    return SimpleNamespace(
-        replay=replay, system=SimpleNamespace(controller=controller), measured=[0, 2], dataset=dataset
-    )
+    system = SimpleNamespace(controller=controller)
+    return SimpleNamespace(replay=replay, system=system, measured=[0, 2], dataset=dataset)
 
 
 def driven(of: Any) -> Loop | None:
-    return _loop(of, of.replay)
+    return Loop.of(of, of.replay)
 
 
 def test_a_rig_is_driven_by_the_loop_of_its_replay() -> None:
@@ -53,14 +54,14 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     gains = {"a": 12.345, "b": 2.9, "c": 40.0, "d": 11.0, "e": 900.0, "fails": 0.0}
 
     def separation(*given: Any) -> float:
-        motion = given[4]
-        if motion.words == "fails":
+        plan = given[4]
+        if plan.words == "fails":
             raise NumericalError("no")
-        return gains[motion.words]
+        return gains[plan.words]
 
     path = 1.0 + np.arange(0.0, DURATION, 1 / RATE)
-    loads: dict[str, Any] = {"payload": 2.0, "payload_of": lambda _: {"gravity_torque": 2.0}}
-    made = [SimpleNamespace(words=n, path=path, **(loads if n == "e" else {"payload": 0.0})) for n in gains]
+    heavy = {"gravity_torque": 2.0}
+    made = [SimpleNamespace(words=n, path=path, payload_of=lambda _, n=n: heavy if n == "e" else {}) for n in gains]
     monkeypatch.setattr(next_experiments, "motions", lambda *_: made)
     monkeypatch.setattr(next_experiments, "_separation", separation)
     floor: Any = None
@@ -74,7 +75,8 @@ def test_motions_are_ranked_by_what_they_bring_and_the_best_three_are_named(monk
     assert reference["angle (deg)"].iloc[0] == pytest.approx(np.degrees(1.0))  # as the logs measure it
     assert reference["angle (deg)"].iloc[-1] == pytest.approx(np.degrees(path[-1]))
     assert np.diff(reference["angle (deg)"])[0] < 1e-3 * np.degrees(1 / RATE)  # from rest
-    assert advise(case(), case("free").replay, floor, first, second) == []  # type: ignore[arg-type]
+    no_derivative = case(kd=None).replay
+    assert advise(case(), no_derivative, floor, first, second) == []  # type: ignore[arg-type]
     monkeypatch.setattr(next_experiments, "twin_delays", lambda _: {"x", "y"})
     assert advise(case(), case().replay, floor, first, second) == []  # type: ignore[arg-type]
     nothing: Any = SimpleNamespace(added=("both",))
@@ -95,15 +97,21 @@ def damped(fitter: Fitter, factor: float) -> Fitted:
     return fitter.fit(system.with_parameters(changed), solve=False)
 
 
+def followed(case: Any, motion: Motion) -> Looped:
+    """The motion in the loop of the replay."""
+    loop = driven(case)
+    assert loop is not None
+    return Looped(motion, loop)
+
+
 def test_a_motion_separates_by_what_no_parameter_can_imitate(fitter: Fitter, nominal: Fitted, short: Motion) -> None:
     """Half the least squares of what the other model leaves more, its posterior as prior, its own unknowns integrated
     out: by dense matrices."""
     case, other = fitter.case, damped(fitter, 3.0)
-    loop = driven(case)
-    assert loop is not None
-    found = _gain(case, fitter.floor, nominal, other, short, loop)
+    plan = followed(case, short)
+    found = _gain(case, fitter.floor, nominal, other, plan.played(case, nominal.system).log)
 
-    experiment = _logged(case, nominal, short, loop)
+    experiment = plan.played(case, nominal.system).log
     rig = replace(case, experiments=(experiment,), prepared=(prepare(experiment, case.system, case.replay),))
     (there,), (own,) = (replace(fitter, case=rig).fit(of.system, solve=False).runs for of in (other, nominal))
     root = np.linalg.cholesky(np.eye(len(there.residual)) + there.by_own @ there.by_own.T)
@@ -119,25 +127,28 @@ def test_a_motion_separates_no_model_from_itself_and_promises_what_holds_for_eit
     fitter: Fitter, nominal: Fitted, short: Motion
 ) -> None:
     case, other = fitter.case, damped(fitter, 3.0)
-    loop = driven(case)
-    assert loop is not None
-    assert _gain(case, fitter.floor, nominal, nominal, short, loop) == pytest.approx(0.0, abs=1e-9)
-    both = [_gain(case, fitter.floor, a, b, short, loop) for a, b in ((nominal, other), (other, nominal))]
-    assert _separation(case, fitter.floor, nominal, other, short, loop) == min(both)
+    plan = followed(case, short)
+
+    def gain(true: Fitted, rival: Fitted) -> float:
+        return _gain(case, fitter.floor, true, rival, plan.played(case, true.system).log)
+
+    assert gain(nominal, nominal) == pytest.approx(0.0, abs=1e-9)
+    both = [gain(a, b) for a, b in ((nominal, other), (other, nominal))]
+    assert _separation(case, fitter.floor, nominal, other, plan) == (min(both) if both[0] > SEPARATES else both[0])
 
 
 def test_a_motion_is_logged_as_the_rig_logs(fitter: Fitter, nominal: Fitted, short: Motion) -> None:
     """With the columns and at the sampling rate of the logs; its command alone makes the motion again."""
     case = fitter.case
     like = case.experiments[case.train[0]]
-    loop = driven(case)
-    assert loop is not None
-    made = _logged(case, nominal, short, loop)
+    plan = followed(case, short)
+    made = plan.played(case, nominal.system).log
     assert list(made.data.columns) == list(like.data.columns)
     assert np.median(np.diff(made.time)) == pytest.approx(np.median(np.diff(like.time)))
     replayed = replace(case.system, controller=None).simulate(made, replay="free").outputs
-    off = (replayed[loop.output] - made.data[loop.output]).abs().max()
-    assert off < 0.01 * np.ptp(made.data[loop.output])  # what the loop commands between samples is not logged
+    output = plan.loop.output
+    off = (replayed[output] - made.data[output]).abs().max()
+    assert off < 0.01 * np.ptp(made.data[output])  # what the loop commands between samples is not logged
 
 
 @pytest.mark.parametrize("payload", [0.0, 2.0])
@@ -148,9 +159,8 @@ def test_a_model_follows_a_motion_from_rest(payload: float) -> None:
     system = joint(("joint:viscous",), viscous=0.5, inertia=0.5)
     motion: Any = SimpleNamespace(path=path, payload=payload, payload_of=lambda _: {"inertia": payload})
     names = [s.name for s in system.info.outputs]
-    of: Any = SimpleNamespace(system=system)
-    rig: Any = SimpleNamespace(outputs=names, settings=lambda: _core.Settings(tolerance=1e-9))
-    found = _run(rig, of, motion, LOOP, time)["outputs"][names.index("joint_angle")]
+    rig: Any = SimpleNamespace(outputs=names, settings=lambda ports: _core.Settings(tolerance=1e-9))
+    found = Looped(motion, LOOP).run(rig, system, time)["outputs"][names.index("joint_angle")]
     assert found[0] == pytest.approx(path[0])
     assert np.abs(np.diff(found[:3])).max() < 1e-4  # at rest
     speed, wanted = np.gradient(found, time), np.gradient(path, time)
@@ -166,10 +176,9 @@ def test_a_system_that_knows_a_part_of_its_state_itself_is_driven_too(tmp_path: 
     system = s2.write_dataset(tmp_path, s2.constants()).system()
     time = np.arange(0.0, 1.0, 0.01)
     path = 0.2 + 0.0 * np.arange(0.0, DURATION, 1 / RATE)
-    motion: Any = SimpleNamespace(path=path, payload=0.0)
+    motion: Any = SimpleNamespace(path=path, payload_of=lambda _: {})
     names = [s.name for s in system.info.outputs]
-    of: Any = SimpleNamespace(system=system)
-    rig: Any = SimpleNamespace(outputs=names, settings=lambda: _core.Settings(tolerance=1e-5))
-    found = _run(rig, of, motion, Loop(20.0, 1.0, "joint_angle"), time)["outputs"][names.index("joint_angle")]
+    rig: Any = SimpleNamespace(outputs=names, settings=lambda ports: _core.Settings(tolerance=1e-5))
+    found = Looped(motion, LOOP_OF_CABLES).run(rig, system, time)["outputs"][names.index("joint_angle")]
     assert found[0] == pytest.approx(0.2)
     assert np.all(np.isfinite(found))

@@ -51,6 +51,18 @@ def test_proposals_name_what_they_separate_and_by_how_much(with_effect: Diagnosi
     assert points.style == "numbered"
     assert any("in nats" in getattr(block, "text", "") for block in blocks)
     (entry,) = with_effect.next_experiments
+    follows = {"description": "a sweep", "separates": ["joint_velocity", "time"], "expected_gain": 12.0}
+    covers = {"description": "reversals", "separates": [], "expected_gain": 4.0, "reference": "next-2.csv"}
+    turns = {"description": "reversals", "separates": ["joint_history", "time"], "expected_gain": 3.0}
+    told = replace(with_effect, next_experiments=({**follows, "reference": "next-1.csv"}, covers, turns))
+    rows: Any = next(block for block in next_steps(told) if hasattr(block, "items"))
+    assert [purpose for _, purpose in rows.items] == [
+        "separates errors that follow the joint velocity from errors that follow time; expected evidence 12 nats; "
+        "reference in next-1.csv",
+        "expected information 4 nats; reference in next-2.csv",
+        "separates errors that follow the way of the joint since its last reversal from errors that follow time; "
+        "expected evidence 3 nats",
+    ]
     without = replace(with_effect, next_experiments=({**entry, "expected_gain": None},))
     assert not any("in nats" in getattr(block, "text", "") for block in next_steps(without))
     texts = {}

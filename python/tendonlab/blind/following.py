@@ -79,12 +79,19 @@ def _advised(reports: Path) -> dict[str, Advice]:
     found = {}
     for path in sorted(reports.glob(f"*/{REPORT}")):
         report = json.loads(path.read_text(encoding="utf-8"))
-        motions = [m for m in report.get("next_experiments", []) if m.get("reference")]
+        motions = [m for m in report.get("next_experiments", []) if m.get("reference") and _is_tie(m)]
         if report.get("indistinguishable") and motions and motions[0]["expected_gain"] >= DECIDES:
             table = pd.read_csv(path.parent / motions[0]["reference"])
+            if len(table.columns) > 2:  # inputs of a rig that follows no path
+                continue
             time, column = table["t"].to_numpy(), str(table.columns[1])
             found[path.parent.name] = Advice(time, table[column].to_numpy(), column, motions[0].get("add", {}))
     return found
+
+
+def _is_tie(motion: dict[str, Any]) -> bool:
+    """Whether a motion separates effects, not what the errors of an unknown cause follow."""
+    return all(":" in name for name in motion.get("separates", []))
 
 
 def _followed(case: Settled, advice: Advice, *, seed: int, choice: Choice) -> Rig:

@@ -4,6 +4,7 @@ these, and what the model lacks often does."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -80,7 +81,7 @@ def _followed(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: S
         if np.ptp(np.concatenate(positions)) == 0.0:
             continue
         for cells in (_cells(velocities, positions, NUM_KNOTS), _cells(velocities, times, NUM_TIMES)):
-            shares += [_foretold(cells, [r[c] for r in residuals]) for c in case.measured]
+            shares += [foretold(cells, [r[c] for r in residuals]) for c in case.measured]
     return max(shares)
 
 
@@ -131,20 +132,39 @@ def _power_below(frequencies: np.ndarray, time: np.ndarray, signal: np.ndarray) 
     return np.asarray(np.interp(frequencies, np.fft.rfftfreq(len(even), even[1] - even[0]), np.cumsum(power) / total))
 
 
+@dataclass(frozen=True)
+class Cells:
+    """Of a map over a direction of motion and over one quantity, which has `knots`. Slower than `slow` is neither
+    forwards nor backwards."""
+
+    knots: np.ndarray
+    slow: float
+
+    @classmethod
+    def spanning(cls, velocities: Sequence[np.ndarray], over: Sequence[np.ndarray], num_knots: int) -> Cells:
+        """With knots at quantiles of what the map is `over`."""
+        knots = np.unique(np.quantile(np.concatenate(over), np.linspace(0.0, 1.0, num_knots)))
+        return cls(knots, SLOW * float(np.sqrt(np.mean(np.square(np.concatenate(velocities))))))
+
+    def at(self, velocity: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Weights of the cells at each sample, (samples, cells)."""
+        direction = np.sign(velocity) * (np.abs(velocity) > self.slow)
+        near = np.array([np.interp(place, self.knots, row) for row in np.eye(len(self.knots))]).T
+        return np.concatenate([near * (direction == d)[:, None] for d in (-1.0, 0.0, 1.0)], axis=1)
+
+
 def _cells(velocities: list[np.ndarray], over: list[np.ndarray], num_knots: int) -> list[np.ndarray]:
-    """Weights of the cells of a map at each sample of each experiment, (samples, cells): directions, and `num_knots`
-    knots at quantiles of what the map is `over`."""
-    knots = np.unique(np.quantile(np.concatenate(over), np.linspace(0.0, 1.0, num_knots)))
-    slow = SLOW * float(np.sqrt(np.mean(np.square(np.concatenate(velocities)))))
-    found = []
-    for velocity, place in zip(velocities, over, strict=True):
-        direction = np.sign(velocity) * (np.abs(velocity) > slow)
-        near = np.array([np.interp(place, knots, row) for row in np.eye(len(knots))]).T
-        found.append(np.concatenate([near * (direction == d)[:, None] for d in (-1.0, 0.0, 1.0)], axis=1))
-    return found
+    """Weights of the cells of a map at each sample of each experiment."""
+    cells = Cells.spanning(velocities, over, num_knots)
+    return [cells.at(velocity, place) for velocity, place in zip(velocities, over, strict=True)]
 
 
-def _foretold(cells: list[np.ndarray], residuals: list[np.ndarray]) -> float:
+def ridge(inner: np.ndarray) -> np.ndarray:
+    """Precision of the cells of a map beside that of the samples, `inner`: a little of an even share of these."""
+    return np.asarray(RIDGE * np.trace(inner) / len(inner) * np.eye(len(inner)))
+
+
+def foretold(cells: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> float:
     """Share of the mean square of all residuals that maps learnt from all other experiments foretell."""
     there = [np.isfinite(r) for r in residuals]
     pairs = [(a[ok], r[ok]) for a, r, ok in zip(cells, residuals, there, strict=True) if ok.any()]
@@ -154,7 +174,6 @@ def _foretold(cells: list[np.ndarray], residuals: list[np.ndarray]) -> float:
     total, left = sum(float(r @ r) for _, r in pairs), 0.0
     for k, (a, r) in enumerate(pairs):
         others = sum(inner) - inner[k]
-        weight = RIDGE * np.trace(others) / len(others)
-        learnt = np.linalg.solve(others + weight * np.eye(len(others)), sum(along) - along[k])
+        learnt = np.linalg.solve(others + ridge(others), sum(along) - along[k])
         left += float(np.sum(np.square(r - a @ learnt)))
     return 1.0 - left / total if total > 0 else 0.0

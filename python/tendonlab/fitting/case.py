@@ -80,6 +80,10 @@ class Case:
 
         return replace(self, prepared=tuple(half(i, ready) for i, ready in enumerate(self.prepared)))
 
+    def playing(self, experiment: Experiment) -> Case:
+        """The case with this experiment in place of its own."""
+        return replace(self, experiments=(experiment,), prepared=(prepare(experiment, self.system, self.replay),))
+
     def beginning(self, i: int) -> Case:
         """The first 0.2 s of experiment i alone, to fit, without run-to-run factors; where no output is measured there
         at once, until 0.2 s after one is."""

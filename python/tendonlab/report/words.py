@@ -104,12 +104,12 @@ def separation(names: Sequence[str]) -> str:
     return f"separates {listing(names, last='from' if len(names) == 2 else 'and')}"
 
 
-def gain_words(nats: float | None) -> str:
-    """The evidence that an experiment is expected to bring, with no digit that would not matter; empty where it is not
-    known."""
+def gain_words(nats: float | None, *, of: str = "evidence") -> str:
+    """The evidence, or the gain `of` something else, that an experiment is expected to bring, with no digit that would
+    not matter; empty where it is not known."""
     if nats is None or not math.isfinite(nats):
         return ""
-    return f"expected evidence {'over 100' if nats > _DECISIVE else number(nats, 2)} nats"
+    return f"expected {of} {'over 100' if nats > _DECISIVE else number(nats, 2)} nats"
 
 
 def unit_of(coordinate: str, units: Mapping[str, str]) -> str:

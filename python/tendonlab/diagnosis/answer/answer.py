@@ -17,6 +17,7 @@ from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats
 from tendonlab.diagnosis.answer.explore import explore
 from tendonlab.diagnosis.answer.findings import findings
+from tendonlab.diagnosis.answer.followed import advise_unknown
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.inverse import inverse_dynamics
 from tendonlab.diagnosis.answer.judged import Judged
@@ -184,9 +185,9 @@ def _what_next(
     regimes: Sequence[Mapping[str, Any]],
 ) -> tuple[tuple[dict[str, Any], ...], dict[str, pd.DataFrame]]:
     """The proposed experiments, best first, and the references of those that are motions, by name."""
-    motions, references = _numbered(_next(case, loop, floor, search))
-    is_unknown = verdict.verdict == "unknown_effect"
-    kind = case.system.kind
+    is_unknown, kind = verdict.verdict == "unknown_effect", case.system.kind
+    followed = advise_unknown(case, loop, search.final) if is_unknown else []
+    motions, references = _numbered([*_next(case, loop, floor, search), *followed])
     explored = explore(regimes, notes.units(case), kind, repeated=floor.repeated) if is_unknown else []
     return (*motions, *explored, *_measurements(case, verdict.indistinguishable)), references
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tendonlab.fitting.case import Case
-from tendonlab.simulation.catalog import unit
+from tendonlab.simulation.catalog import unit as unit_of
 from tendonlab.simulation.system import System
 
 DURATION, RATE = 6.0, 250.0
@@ -54,34 +55,52 @@ def eased(path: np.ndarray) -> np.ndarray:
 
 def motions(case: Case, output: str) -> list[Motion]:
     """Slow, middling and full reversals, micro motion and a sweep; with more payload where gravity acts."""
-    reach = seen_reach(case, case.outputs.index(output))
-    place = output.replace("_", " ")
-    made = [
+    made = paths(seen_reach(case, case.outputs.index(output)), output.replace("_", " "))
+    row = case.system.info.with_role("payload")
+    gravity = 0.0 if row is None else case.system.parameters[row.name]
+    if gravity != 0.0:
+        heavier = 0.5 * abs(gravity)
+        full = made[2]
+        effort = unit_of("effort", case.system.axis).replace("*", "·")
+        words = f"{full.words}, with a load that adds {heavier:.2g} {effort} of gravity at 90 degrees"
+        made.append(Motion(words, full.path, heavier))
+    return made
+
+
+def paths(reach: Reach, place: str) -> list[Motion]:
+    """Slow, middling and full reversals, a sweep and micro motion."""
+    return [
         _reversals(reach, place, "slow reversals", 0.1, 0.1),
         _reversals(reach, place, "reversals", 0.5, 0.5),
         _reversals(reach, place, "full-travel triangles", 1.0, 1.0),
         _sweep(reach, place),
         _micro_motion(reach, place),
     ]
-    row = case.system.info.with_role("payload")
-    gravity = 0.0 if row is None else case.system.parameters[row.name]
-    if gravity != 0.0:
-        heavier = 0.5 * abs(gravity)
-        full = made[2]
-        effort = unit("effort", case.system.axis).replace("*", "·")
-        words = f"{full.words}, with a load that adds {heavier:.2g} {effort} of gravity at 90 degrees"
-        made.append(Motion(words, full.path, heavier))
-    return made
+
+
+def rested(motion: Motion) -> Motion:
+    """The motion after a rest of half its duration: the same places and speeds, later."""
+    wait = round(0.5 * DURATION * RATE)
+    path = np.concatenate([np.full(wait, motion.path[0]), eased(motion.path)[:-wait]])
+    return replace(motion, words=f"a rest of {0.5 * DURATION:g} s, then {motion.words}", path=path)
 
 
 def seen_reach(case: Case, c: int) -> Reach:
     """What the logs show of output c."""
+    runs = [
+        (experiment.time, ready.measured[c]) for experiment, ready in zip(case.experiments, case.prepared, strict=True)
+    ]
+    return reach_of(runs, "m" if case.system.axis == "linear" else "rad")
+
+
+def reach_of(runs: Sequence[tuple[np.ndarray, np.ndarray]], unit: str) -> Reach:
+    """What logs of one signal, in `unit`, show: time and samples of each."""
     positions, speeds, accelerations = [], [], []
-    for experiment, ready in zip(case.experiments, case.prepared, strict=True):
-        kept = np.isfinite(ready.measured[c])
-        time = np.asarray(experiment.time)[kept]
+    for stamps, samples in runs:
+        kept = np.isfinite(samples)
+        time = np.asarray(stamps)[kept]
         width = max(1, round(0.02 * len(time) / (time[-1] - time[0])))
-        x = np.convolve(ready.measured[c][kept], np.ones(width) / width, mode="valid")
+        x = np.convolve(samples[kept], np.ones(width) / width, mode="valid")
         v = np.gradient(x, time[: len(x)])
         positions.append(x)
         speeds.append(np.abs(v))
@@ -92,7 +111,7 @@ def seen_reach(case: Case, c: int) -> Reach:
         travel=float(np.ptp(whole)) / 2,
         speed=float(np.quantile(np.concatenate(speeds), SEEN)),
         acceleration=float(np.quantile(np.concatenate(accelerations), SEEN)),
-        unit="m" if case.system.axis == "linear" else "rad",
+        unit=unit,
     )
 
 
