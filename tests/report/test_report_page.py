@@ -198,6 +198,14 @@ def test_a_selected_effect_is_listed_however_many_candidates_there_are(with_effe
     assert f"<code>{chosen}</code>" in effects_table(replace(with_effect, effects=many, selected=(chosen,)))
 
 
+def test_candidates_that_no_fit_speaks_of_are_counted(with_effect: Diagnosis, tmp_path: Path) -> None:
+    bare = replace(with_effect.effects[-1], effect="bias", parameters={}, held_out_gain=None, probability=0.0)
+    told = replace(with_effect, effects=(*with_effect.effects, bare))
+    without, page = (read(diagnosis, tmp_path)[0] for diagnosis in (with_effect, told))
+    assert "screened only" not in without
+    assert "1 of all candidates were screened only" in page
+
+
 def test_all_held_out_runs_are_on_the_page_all_but_the_worst_folded(with_effect: Diagnosis, tmp_path: Path) -> None:
     (run,) = with_effect.overlays
     inputs = {"motor_torque": np.zeros_like(run.time)}

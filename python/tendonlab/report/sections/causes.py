@@ -22,10 +22,18 @@ def causes(diagnosis: Diagnosis) -> list[Block]:
     if not findings:
         return [Text(text="No candidate effect was considered.")]
     blocks: list[Block] = [Candidates(findings=findings, brief=True), Text(text=_EVIDENCE, note=True)]
-    hidden = len(diagnosis.effects) - len(findings)
-    if hidden:
-        blocks.append(Text(text=f"{hidden} more of low probability in report.json.", note=True))
+    if less := _less_likely(diagnosis, len(diagnosis.effects) - len(findings)):
+        blocks.append(Text(text=less, note=True))
     return [*blocks, *_combinations(diagnosis), _ties(diagnosis), _blind_spots(diagnosis)]
+
+
+def _less_likely(diagnosis: Diagnosis, hidden: int) -> str:
+    """What the table does not show."""
+    if not hidden:
+        return ""
+    unfitted = sum(not effect.parameters for effect in diagnosis.effects)
+    screened = f" {unfitted} of all candidates were screened only: they promised too little to be fitted."
+    return f"{hidden} more of low probability in report.json." + (screened if unfitted else "")
 
 
 def listed(diagnosis: Diagnosis) -> list[EffectFinding]:
