@@ -16,6 +16,7 @@ from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.odd import odd_channels, odd_clocks, owned
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
+from tendonlab.checking.silent import all_at_rest, silent_inputs
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.checking.tensions import pushing_cables
 from tendonlab.data import Dataset, NominalParameter, require_dataset, simulator_of
@@ -48,6 +49,7 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     elif system.info.steady:
         notes.append(UNTIMED.format(kind=system.kind))
     elif (logs := read_logs(dataset, system.info, marked)) is None:
+        found += all_at_rest(dataset, system)
         notes.append(UNMOVED)
     else:
         more, notes = _by_the_equation(Equation(dataset, system), logs, marked)
@@ -70,6 +72,8 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
+    if silent := list(silent_inputs(equation, logs)):  # nothing balances what they do not tell
+        return silent, []
     factors = owned(wrong_factors(equation, logs), equation, logs, marked) or odd_channels(equation, logs, marked)
     if factors:  # lags are judged once these are corrected
         return factors, []

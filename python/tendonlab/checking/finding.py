@@ -7,7 +7,7 @@ from html import escape
 from typing import Any
 
 PROBLEMS = (
-    "sign", "scale", "clock", "copy", "sampling", "outliers", "saturation", "quantisation", "constant",
+    "sign", "scale", "clock", "copy", "uninformative", "sampling", "outliers", "saturation", "quantisation", "constant",
 )  # fmt: skip
 
 
