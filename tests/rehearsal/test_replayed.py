@@ -1,4 +1,4 @@
-"""Noise of the sensors that leaves, once replayed, what the repeats of the rig leave."""
+"""Noise of the sensors that leaves, once replayed, what the logs of the rig leave."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,12 +16,13 @@ from tendonlab.rehearsal.sensors import Noise, Sensor, floor_of_logs, noise_of_r
 SLOW = Sensor("joint_angle", 2e-4, (0.97,))  # 0.8 mrad, a memory of 33 samples
 
 
-def repeated_rig(pendulum: Path) -> SimulatedRig:
-    """Six repeats of one motion, without a controller, of a rig whose sensor has slow noise."""
+def repeated_rig(pendulum: Path, label: str | None = "A") -> SimulatedRig:
+    """Six repeats of one motion, without a controller, of a rig whose sensor has slow noise. `label`: None where the
+    dataset does not say that they repeat."""
     rig = tl.load(pendulum)
     rigs = simulated_rig(rig)
-    runs = tuple(replace(rigs.runs[0], name=f"repeat-{k}", repeat="A") for k in range(6))
-    rigs = replace(rigs, runs=runs, noise=Noise((SLOW,), 0.008, repeated=True))
+    runs = tuple(replace(rigs.runs[0], name=f"repeat-{k}", repeat=label, split="train") for k in range(6))
+    rigs = replace(rigs, runs=runs, noise=Noise((SLOW,), 0.008, repeated=label is not None))
     return replace(rigs, rig=rigs.noisy(np.random.default_rng(7), rigs.system))
 
 
@@ -31,12 +32,14 @@ def slow_power(noise: Noise) -> float:
 
 
 @pytest.mark.cpu(20)
-def test_slow_noise_that_the_replay_follows_is_given_back(pendulum: Path) -> None:
-    """The floor of the repeats alone holds a fraction of its power."""
-    rigs = repeated_rig(pendulum)
+@pytest.mark.parametrize("label", ["A", None])
+def test_slow_noise_that_the_replay_follows_is_given_back(pendulum: Path, label: str | None) -> None:
+    """The floor of the logs alone holds a fraction of its power."""
+    rigs = repeated_rig(pendulum, label)
     case = make_case(rigs.rig)
     floor = floor_of_logs(rigs.rig, case)
     assert floor is not None
+    assert floor.repeated == (label is not None)
     once = noise_of_rig(rigs.rig, case, floor)
     true = slow_power(Noise((SLOW,), 0.0, repeated=True))
     assert slow_power(once) < 0.5 * true

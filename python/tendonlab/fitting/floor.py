@@ -179,7 +179,7 @@ def remaining(case: Case, seen: Sequence[Sensitivities]) -> Floor:
     for c in case.measured:
         records = [d[c] for d in cleaned if np.isfinite(d[c]).any()]
         sd[c] = float(case.noise[c])
-        if records and (left := _rms([record - np.nanmean(record) for record in records])) > sd[c]:
+        if records and (left := _rms([record - np.nanmean(record) for record in records])) > 0.0:
             rms[c] = left
             ar[c], sd[c] = _autoregression(records)
     return Floor(rms, ar, sd, RUN_TO_RUN, repeated=False)

@@ -10,11 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from tendonlab import _core
+from tendonlab.diagnosis.floor import rough_fit
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.floor import estimate, remaining, sensitivities
 from tendonlab.fitting.noise import Floor
 from tendonlab.rehearsal.rig import SimulatedRig
-from tendonlab.rehearsal.sensors import Noise, Sensor
+from tendonlab.rehearsal.sensors import Noise, Sensor, at_the_fit
 
 ROUNDS, DRAWS = 4, 3  # corrections, and sets of logs that are simulated for each
 MOST_RUNS = 4  # simulated where nothing repeats
@@ -63,11 +65,13 @@ def spectrum(sd: float, memory: Sequence[float]) -> np.ndarray:
 
 
 def _left(rigs: SimulatedRig, random: np.random.Generator) -> Floor:
-    """What the logs of one simulated rig leave, replayed by the simulator that made them."""
+    """What the logs of one simulated rig leave, replayed by the simulator that made them; where nothing repeats, once
+    tuned to them, as the model of the real logs was."""
     case = make_case(rigs.noisy(random, rigs.system))
+    if not rigs.noise.repeated:
+        return remaining(case, at_the_fit(case, rough_fit(case, _core.Cancel())))
     runs = range(len(case.experiments))
-    seen = [sensitivities(case, case.system, i, case.own_mean(i).tolist()) for i in runs]
-    return estimate(case, seen, list(runs)) if rigs.noise.repeated else remaining(case, seen)
+    return estimate(case, [sensitivities(case, case.system, i, case.own_mean(i).tolist()) for i in runs], list(runs))
 
 
 def _with_power(sensor: Sensor, factor: np.ndarray) -> Sensor:

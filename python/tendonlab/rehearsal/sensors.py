@@ -15,7 +15,8 @@ from tendonlab.diagnosis.diagnose import best_model
 from tendonlab.diagnosis.floor import first_floor, rough_fit
 from tendonlab.errors import DatasetError, NumericalError
 from tendonlab.fitting.case import Case
-from tendonlab.fitting.floor import remaining, sensitivities
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.floor import Sensitivities, remaining, sensitivities
 from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, noise_of, without_rounding
 from tendonlab.simulation.reading import noise_sd
 
@@ -100,9 +101,15 @@ def floor_of_logs(rig: Dataset, case: Case) -> Floor | None:
         best = best_model(rig)
     except (DatasetError, NumericalError):
         return None
-    system = replace(best.system, controller=case.system.controller)
-    own = [initial[: len(case.own_mean(i))] for i, initial in zip(case.train, best.initial, strict=True)]
-    return remaining(case, [sensitivities(case, system, i, start) for i, start in zip(case.train, own, strict=True)])
+    return remaining(case, at_the_fit(case, best))
+
+
+def at_the_fit(case: Case, model: Fitted) -> list[Sensitivities]:
+    """Of each training experiment at a model, which may have been fitted without the controller and with friction that
+    differs from run to run."""
+    system = replace(model.system, controller=case.system.controller)
+    own = [initial[: len(case.own_mean(i))] for i, initial in zip(case.train, model.initial, strict=True)]
+    return [sensitivities(case, system, i, start) for i, start in zip(case.train, own, strict=True)]
 
 
 def noise_of_command(rig: Dataset, name: str) -> float:
