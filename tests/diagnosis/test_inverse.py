@@ -9,7 +9,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.data import Dataset, Experiment, NominalParameter, SignalSpec
-from tendonlab.diagnosis.answer.inverse import amplitudes, effort_column, inverse_dynamics
+from tendonlab.diagnosis.answer.inverse import CUTOFF, amplitudes, effort_column, inverse_dynamics, low_passed
 from tendonlab.fitting.case import Case, make_case
 
 VELOCITY = np.array([-1.0, 0.5, 2.0])
@@ -133,3 +133,12 @@ def test_gravity_known_efforts_and_payloads_are_part_of_the_balance() -> None:
     for name in ("inertia", "gravity_torque", "viscous", "coulomb"):
         assert found[name] == pytest.approx(true[name], rel=0.05), name
     assert found["held-out rms"] < 0.1 * np.sqrt(0.5) * true["torque_constant"]
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 1.0, 2.0])
+def test_the_filter_has_the_gain_of_butterworth_and_no_phase(share: float) -> None:
+    time = np.arange(0.0, 2.0, 1e-3)
+    wave = np.sin(2 * np.pi * share * CUTOFF * time + 0.4)
+    smooth = low_passed(wave + 0.3 * time, 1e-3)  # what drifts stays
+    kept = slice(150, -150)
+    np.testing.assert_allclose(smooth[kept], (wave / (1 + share**8) + 0.3 * time)[kept], atol=3e-3)

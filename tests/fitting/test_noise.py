@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.floor import LARGEST, _autoregression, _run_to_run, friction_groups
-from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, sensor_noise
+from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, remembered, sensor_noise
 from tendonlab.simulation.prepare import Replay, prepare
 
 TIME = np.arange(0.0, 4.0, 0.002)
@@ -157,3 +157,11 @@ def test_noise_is_taken_as_white_where_samples_stand_alone() -> None:
     floor = Floor(np.array([sd]), [[0.8]], [1.0], 0.0, repeated=True)
     measured = record[None, :200]
     assert len(floor.whitening(measured).residual(np.zeros((1, 200)))) == np.isfinite(measured).sum()
+
+
+@pytest.mark.parametrize("memory", [(), (0.97,), (0.5, 0.2, -0.1)])
+def test_noise_with_memory_is_that_of_the_recursive_filter(memory: tuple[float, ...]) -> None:
+    driving = np.random.default_rng(0).normal(size=300)
+    np.testing.assert_allclose(
+        remembered(driving, memory), lfilter([1.0], [1.0, *(-a for a in memory)], driving), atol=1e-12
+    )

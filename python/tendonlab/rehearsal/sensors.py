@@ -17,7 +17,7 @@ from tendonlab.errors import DatasetError, NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, remaining, sensitivities
-from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, noise_of, without_rounding
+from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, noise_of, remembered, without_rounding
 from tendonlab.simulation.reading import noise_sd
 
 if TYPE_CHECKING:
@@ -119,9 +119,7 @@ def noise_of_command(rig: Dataset, name: str) -> float:
 
 def total_sd(innovation: float, memory: Sequence[float]) -> float:
     """Sd of noise that `innovation` drives through an autoregression."""
-    from scipy.signal import lfilter
-
-    response = lfilter([1.0], [1.0, *(-a for a in memory)], np.eye(1, BURN_IN)[0])
+    response = remembered(np.eye(1, BURN_IN)[0], memory)
     return innovation * float(np.sqrt(response @ response))
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import CubicSpline
 
 from tendonlab.data.units import convert
@@ -133,6 +132,8 @@ class _Channel:
         runs = [(e.time, e.data[row.name].to_numpy(dtype=float)) for e in case.experiments if row.name in e.data]
         measured = unit(row.dimension, case.system.axis)
         if row.dimension in SPEEDS:
+            from scipy.integrate import cumulative_trapezoid
+
             gone = [(time, cumulative_trapezoid(values, time, initial=0.0)) for time, values in runs]
             return cls(row, reach_of(gone, measured.removesuffix("/s")), 0.0)
         first = case.experiments[case.train[0]].data[row.name]

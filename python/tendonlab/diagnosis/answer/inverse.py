@@ -13,6 +13,7 @@ from tendonlab.report.diagnosis import SideTable
 from tendonlab.simulation.system import System
 
 CUTOFF = 60.0  # Hz, of a Butterworth filter of fourth order, forwards and backwards: it shifts no phase
+SETTLED = 6.0  # periods of the cutoff by which a record is lengthened at its ends
 TRIM = 0.1  # s at each end, where the filter starts and stops
 
 
@@ -63,12 +64,10 @@ def _motion(case: Case, i: int, output: int) -> Motion:
     """Experiment i filtered. The payload that it states adds to gravity, and an effort known to act on the axis helps
     the drive."""
     from scipy.interpolate import CubicSpline
-    from scipy.signal import butter, filtfilt
 
     experiment, info = case.experiments[i], case.system.info
     time = np.asarray(experiment.time)
     step = float(np.median(np.diff(time)))
-    b, a = butter(4, 2 * CUTOFF * step)
     effort = experiment.data[info.inputs[0].name].to_numpy(dtype=float) * _command_gain(case.system)
     for known in info.inputs[1:]:
         if known.name in experiment.data:
@@ -76,13 +75,25 @@ def _motion(case: Case, i: int, output: int) -> Motion:
     recorded = pd.DataFrame({"position": case.prepared[i].measured[output], "effort": effort})
     whole = recorded.interpolate(limit_direction="both")
     even = np.arange(time[0], time[-1] + 0.5 * step, step)  # a filter knows no stamps
-    position = filtfilt(b, a, CubicSpline(time, whole["position"])(even))
-    effort = filtfilt(b, a, np.interp(even, time, whole["effort"]))
+    position = low_passed(CubicSpline(time, whole["position"])(even), step)
+    effort = low_passed(np.interp(even, time, whole["effort"]), step)
     gravity = info.with_role("payload")
     effort = effort - (experiment.add.get(gravity.name, 0.0) if gravity else 0.0) * np.sin(position)
     velocity = np.gradient(position, step)
     kept = slice(round(TRIM / step), -round(TRIM / step))
     return Motion(position[kept], velocity[kept], np.gradient(velocity, step)[kept], effort[kept])
+
+
+def low_passed(values: np.ndarray, step: float) -> np.ndarray:
+    """Samples of one `step`, filtered at `CUTOFF` without phase shift: the gain of a Butterworth filter of order four
+    that runs forwards and backwards. Beyond its ends a record goes on as its mirror image turned upside down."""
+    beyond = min(len(values) - 1, round(SETTLED / (CUTOFF * step)))
+    before, after = 2 * values[0] - values[beyond:0:-1], 2 * values[-1] - values[-2 : -beyond - 2 : -1]
+    longer = np.concatenate([before, values, after])
+    trend = np.linspace(longer[0], longer[-1], len(longer))  # what is periodic has no jump at its ends
+    gain = 1.0 / (1.0 + (np.fft.rfftfreq(len(longer), step) / CUTOFF) ** 8)
+    smooth = trend + np.fft.irfft(gain * np.fft.rfft(longer - trend), len(longer))
+    return np.asarray(smooth[beyond : beyond + len(values)])
 
 
 def _gravity(system: System) -> list[str]:
