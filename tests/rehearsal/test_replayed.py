@@ -78,5 +78,5 @@ def test_noise_of_a_logged_command_is_no_noise_of_the_sensor(pendulum: Path, rea
 
 def test_the_mean_power_is_the_variance() -> None:
     sensor = Sensor("q", 0.1, (0.6, 0.2))
-    read = sensor.read(np.zeros(200_000), np.random.default_rng(1))
+    read = sensor.drawn(200_000, np.random.default_rng(1))
     assert np.mean(spectrum(sensor.noise, sensor.memory)) == pytest.approx(read.var(), rel=0.03)

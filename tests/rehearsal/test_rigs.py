@@ -42,11 +42,11 @@ def test_the_command_is_that_of_the_controller(sample_time: float) -> None:
 
 def test_a_sensor_has_its_noise_memory_and_resolution() -> None:
     random = np.random.default_rng(0)
-    white = Sensor("q", 0.01).read(np.zeros(20000), random)
+    white = Sensor("q", 0.01).drawn(20000, random)
     assert white.std() == pytest.approx(0.01, rel=0.03)
-    slow = Sensor("q", 0.01, memory=(0.9,)).read(np.zeros(20000), random)
+    slow = Sensor("q", 0.01, memory=(0.9,)).drawn(20000, random)
     assert slow.std() == pytest.approx(0.01 / np.sqrt(1 - 0.81), rel=0.1)  # stationary sd of an AR(1) process
-    rounded = Sensor("q", 0.01, resolution=0.25).read(np.linspace(0, 1, 50), random)
+    rounded = Sensor("q", 0.01, resolution=0.25).rounded(np.linspace(0, 1, 50))
     assert set(np.round(rounded / 0.25, 9) % 1) == {0.0}
 
 
@@ -103,6 +103,28 @@ def test_a_planned_rig_follows_its_controller(planned: Path) -> None:
     assert logs["b"].data["joint_angle"].iloc[0] == pytest.approx(0.2, abs=0.01)  # it starts where the reference does
 
 
+@pytest.mark.parametrize(("rate", "hears"), [(100, True), (50, False)])
+def test_a_controller_hears_the_noise_of_its_sensor_at_each_tick(planned: Path, rate: int, hears: bool) -> None:
+    """The logged command is that of the noisy reading, and the noise shakes the joint; behind a log that is slower than
+    the clock neither is known."""
+    plan = planned / "plan.toml"
+    plan.write_text(
+        f'format = "tendonlab-plan/1"\nrate = {rate}\n'
+        '[[experiments]]\nname = "a"\nshape = "chirp"\namplitude = 0.4\nduration = 3\nfrequencies = [0.2, 0.5]\n'
+    )
+    rig = rig_without_logs(planned)
+    assert rig.controller is not None
+    rig = replace(rig, controller=replace(rig.controller, sample_time=0.01))
+    rigs = simulated_rig(rig, planned_experiments(plan, rig))
+    loop = rigs.drive.controller
+    assert loop is not None
+    quiet, noisy = rigs.clean({})["a"], rigs.noisy(np.random.default_rng(2), rigs.system)["a"]
+    wanted = command_of(loop, noisy, noisy.data["joint_angle"].to_numpy(dtype=float))
+    missed = wanted - noisy.data["motor_torque"]
+    heard = noisy.data["motor_torque"] - quiet.data["motor_torque"]
+    assert (missed.std() < 1e-3 * heard.std()) == hears
+
+
 def test_with_repeats_the_noise_is_what_they_do_not_repeat(pendulum: Path) -> None:
     """Simulated repeats of a rig whose sensor is noisier than stated show that noise, and its friction's scatter."""
     rig = tl.load(pendulum)
@@ -119,5 +141,5 @@ def test_with_repeats_the_noise_is_what_they_do_not_repeat(pendulum: Path) -> No
     noise = simulated_rig(replace(rig, experiments=tuple(repeats))).noise
     assert noise.repeated
     assert 0.02 < noise.scatter < 0.2  # four runs tell an sd to a factor of two or so
-    read = noise.sensors[0].read(np.zeros(5000), random)
+    read = noise.sensors[0].drawn(5000, random)
     assert read.std() == pytest.approx(4e-3, rel=0.15)

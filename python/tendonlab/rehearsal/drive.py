@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,12 +12,13 @@ from tendonlab.arguments import JITTER
 from tendonlab.data import Dataset, Experiment
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.replay import choose_replay
-from tendonlab.simulation.command import command_of
+from tendonlab.simulation.command import OFF_CLOCK, command_of, disturbance_of
 from tendonlab.simulation.records import Controller
 from tendonlab.simulation.signals import spline_near
 from tendonlab.simulation.system import System
 
 REFERENCE, FEEDFORWARD = "_logged_motion", "_logged_command"  # columns of a tracking loop; no signal has these names
+FED = "_fed_noise"  # column of what noise of the sensor adds to the command
 NEAR = 0.1  # of the sd of the motion: how far a rig may drift from the tracked motion when its command is played alone
 
 
@@ -40,8 +42,11 @@ class Drive:
         held = self._holds(experiment) and self._clock(experiment) == 0
         return replace(experiment, data=data.assign(**added), holds={**experiment.holds, FEEDFORWARD: held})
 
-    def driven(self, system: System, run: Experiment, tolerance: float) -> tuple[pd.DataFrame, np.ndarray | None]:
+    def driven(
+        self, system: System, run: Experiment, tolerance: float, noise: Mapping[str, np.ndarray | float]
+    ) -> tuple[pd.DataFrame, np.ndarray | None]:
         """The outputs of `system` in `run`, and the command that moved it, shape (n,); None where there is no loop.
+        `noise`: of the sensor of each output. A stated controller whose clock the log has hears that of its own sensor.
 
         What a tracking loop commands between samples is not logged. So the rig moves as the logged command alone moves
         it: only then can a diagnosis explain the logs by the rig. A rig that would fall or drift away keeps the motion
@@ -53,9 +58,26 @@ class Drive:
         looped = replace(system, controller=loop).simulate(run, tolerance=tolerance).outputs
         command = command_of(loop, run, looped[loop.measured].to_numpy(dtype=float))
         if not self.tracks:
-            return looped, command
+            heard = noise[loop.measured]
+            return self._shaken(system, run, looped, heard, tolerance) if np.any(heard) else (looped, command)
         alone = _played(system, replace(run, data=run.data.assign(**{self.command: command})), tolerance)
         return (looped if alone is None or _drifts(alone, looped, loop.measured) else alone), command
+
+    def _shaken(
+        self, system: System, run: Experiment, looped: pd.DataFrame, noise: np.ndarray | float, tolerance: float
+    ) -> tuple[pd.DataFrame, np.ndarray]:
+        """Outputs and command where the stated controller hears `noise`, from the outputs `looped` where it does not.
+        What it hears between the samples of a log that is slower, or in continuous time, is not known."""
+        loop = self.controller
+        assert loop is not None
+        read = looped[loop.measured].to_numpy(dtype=float)
+        command = command_of(loop, run, read)
+        if not _is_clocked(run, loop.sample_time):
+            return looped, command
+        fed = command_of(loop, run, read + noise) - command + disturbance_of(loop, run, run.time)
+        heard = replace(run, data=run.data.assign(**{FED: fed}), holds={**run.holds, FED: True})
+        moved = replace(system, controller=replace(loop, disturbance=FED)).simulate(heard, tolerance=tolerance).outputs
+        return moved, command_of(loop, run, moved[loop.measured].to_numpy(dtype=float) + noise)
 
     def _clock(self, run: Experiment) -> float:
         """The sampling interval of a tracking loop, s: that of the samples. 0, a loop in continuous time, where the
@@ -89,6 +111,12 @@ def drive_of(rig: Dataset) -> Drive:
         disturbance=FEEDFORWARD,
     )
     return Drive(loop, command, tracks=True)
+
+
+def _is_clocked(run: Experiment, period: float) -> bool:
+    """Whether each sample of a log is a tick of a controller's clock."""
+    ticks = run.time[0] + period * np.arange(len(run.time))
+    return period > 0.0 and bool(np.max(np.abs(run.time - ticks)) <= OFF_CLOCK * period)
 
 
 def _smooth_path(time: np.ndarray, logged: np.ndarray) -> np.ndarray:

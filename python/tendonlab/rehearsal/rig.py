@@ -66,15 +66,16 @@ class SimulatedRig:
 
     def _log(self, run: Experiment, system: System, random: np.random.Generator | None) -> Experiment:
         """`run` as `system` logs it; without noise where `random` is None."""
-        outputs, command = self.drive.driven(system, run, TOLERANCE)
+        noise = {s.name: 0.0 if random is None else s.drawn(len(run.data), random) for s in self.noise.sensors}
+        outputs, command = self.drive.driven(system, run, TOLERANCE, noise)
         logged = {}
         for sensor in self.noise.sensors:
-            values = outputs[sensor.name].to_numpy()
-            read = values if random is None else sensor.read(values, random)
+            values = outputs[sensor.name].to_numpy() + noise[sensor.name]
+            read = values if random is None else sensor.rounded(values)
             logged[sensor.name] = np.where(np.isfinite(self._pattern(run, sensor.name)), read, np.nan)
         if command is not None:
-            noise = 0.0 if random is None else self.noise.command * random.normal(size=len(command))
-            logged[str(self.drive.command)] = command + noise
+            unheard = 0.0 if random is None else self.noise.command * random.normal(size=len(command))
+            logged[str(self.drive.command)] = command + unheard
         data = run.data.assign(**logged)
         return replace(run, data=data[[name for name in data.columns if name in self.rig.signals]])
 

@@ -39,9 +39,12 @@ class Sensor:
         """Sd of the noise, with its memory."""
         return total_sd(self.noise, self.memory)
 
-    def read(self, values: np.ndarray, random: np.random.Generator) -> np.ndarray:
-        """`values`, shape (n,), as the sensor logs them."""
-        read = values + drawn(self.noise, self.memory, len(values), random)
+    def drawn(self, num: int, random: np.random.Generator) -> np.ndarray:
+        """Noise of `num` samples."""
+        return drawn(self.noise, self.memory, num, random)
+
+    def rounded(self, read: np.ndarray) -> np.ndarray:
+        """Readings, shape (n,), to its resolution."""
         return np.asarray(np.round(read / self.resolution) * self.resolution if self.resolution else read)
 
 

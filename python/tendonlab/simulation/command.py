@@ -34,7 +34,7 @@ def command_of(controller: Controller, experiment: Experiment, measured: np.ndar
         slope = weight * reference(time, 1) - seen(time, 1)
         command = proportional * (reference(time) - measured) + controller.kd * slope
     command = np.clip(command, -controller.limit, controller.limit)
-    return np.asarray(command + _disturbance(controller, experiment, now if step > 0 else time))
+    return np.asarray(command + disturbance_of(controller, experiment, now if step > 0 else time))
 
 
 def _gains(controller: Controller) -> tuple[float, float]:
@@ -56,7 +56,7 @@ def mean_command_of(controller: Controller, experiment: Experiment, measured: np
         wanted, moved = _over_ticks(time, reference, controller.sample_time)
     proportional, weight = _gains(controller)
     command = proportional * (wanted - read) + controller.kd * (weight * moved - change) / step
-    disturbance = _disturbance(controller, experiment, time[:-1] + 0.5 * step)
+    disturbance = disturbance_of(controller, experiment, time[:-1] + 0.5 * step)
     return np.asarray(np.clip(command, -controller.limit, controller.limit) + disturbance)
 
 
@@ -95,10 +95,10 @@ def fed_noise(controller: Controller, experiment: Experiment, command: str) -> t
     asked = command_of(controller, filled, filled.data[controller.measured].to_numpy(dtype=float)) - smooth
     if not added @ asked > HEARD * (asked @ asked):
         return None
-    return time[0] + step * tick, _disturbance(controller, filled, time) + added
+    return time[0] + step * tick, disturbance_of(controller, filled, time) + added
 
 
-def _disturbance(controller: Controller, experiment: Experiment, at: np.ndarray) -> np.ndarray:
+def disturbance_of(controller: Controller, experiment: Experiment, at: np.ndarray) -> np.ndarray:
     """What is added to the command of a controller at the instants `at`."""
     if controller.disturbance is None:
         return np.zeros(len(at))
