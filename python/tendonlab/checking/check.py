@@ -72,9 +72,8 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
-    if silent := list(silent_inputs(equation, logs)):  # nothing balances what they do not tell
-        return silent, []
     factors = owned(wrong_factors(equation, logs), equation, logs, marked) or odd_channels(equation, logs, marked)
+    factors = factors or list(silent_inputs(equation, logs))
     if factors:  # lags are judged once these are corrected
         return factors, []
     return _clocks(equation, logs)

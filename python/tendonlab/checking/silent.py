@@ -12,45 +12,48 @@ from tendonlab.checking.logs import Logs
 from tendonlab.checking.terms import rms, terms
 from tendonlab.data import Dataset
 from tendonlab.report.words import listing
-from tendonlab.simulation.reading import noise_sd
+from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.system import System
 
-NOISE = 1.3  # times the white part of a record, within which the whole record is noise
+NOISE = 1.3  # times the white part of all records of a signal, within which all of them is noise
 NEEDED = 20.0  # times what an input contributes, beyond which the logged motion needs something else
-SAMPLES = 1500  # that decide
+UNBALANCED = 0.3  # of the largest effort that a fit leaves in the equation of motion: what misses where an input does
+SAMPLES, SHARE = 1500, 0.2  # that decide, and share of them that counts as independent
 
 
 def silent_inputs(equation: Equation, logs: Logs) -> Iterator[Finding]:
-    """A finding for each required input that reads nothing but noise in every experiment, far smaller than what the
-    logged motion needs. Torque drawn anew at each sample looks like noise too, but moves the rig."""
+    """A finding for each required input that reads nothing but noise in every experiment, where no values of the
+    parameters balance the logged motion. Torque drawn anew at each sample looks like noise too, but balances the
+    motion; so does a motor that is off while the rig swings freely."""
     names = _noisy(equation.dataset, [s.name for s in equation.system.info.inputs if s.required])
     if not names or not equation.moved:
         return
     found = terms(equation, logs.thinned(SAMPLES))
-    if rms(found.residual[0]) > NEEDED * found.size[0]:
+    fit = found.fit(np.full(len(equation.predicted), SHARE))
+    slopes = zip(found.unknowns, found.slopes(fit.x), strict=True)
+    largest = max((rms(slope[0]) for unknown, slope in slopes if unknown.logarithm), default=np.inf)
+    if rms(found.residual[0]) > NEEDED * found.size[0] and rms(fit.residual[0]) > UNBALANCED * largest:
         for name in names:
-            detail = f"{name} reads nothing but noise in every experiment, though the rig moves: it tells no parameter"
+            detail = f"{name} is noise in every experiment, yet the rig moves: was the right channel logged?"
             yield Finding(problem="uninformative", signal=name, detail=detail, blocks=True)
 
 
 def all_at_rest(dataset: Dataset, system: System) -> Iterator[Finding]:
-    """A finding where the inputs read nothing but noise, and so do all positions."""
+    """A finding where the inputs read nothing but noise, and all positions stay where they are in all experiments."""
     driving = [s.name for s in system.info.inputs if s.required]
     moving = [s.name for s in system.info.outputs if s.axis is not None and s.name in dataset.signals]
     names = [*driving, *moving]
     if driving and moving and _noisy(dataset, names) == names:
-        detail = f"{listing(names)} read nothing but noise in every experiment: they tell no parameter"
+        detail = f"{listing(names)} are noise in every experiment: nothing moves"
         yield Finding(problem="uninformative", signal=driving[0], detail=detail, blocks=True)
 
 
 def _noisy(dataset: Dataset, names: list[str]) -> list[str]:
-    """Those of the signals that were logged and read nothing but noise in every experiment."""
-    return [name for name in names if all(_is_noise(e.data.get(name)) for e in dataset)]
+    """Those of the signals that were logged in every experiment and read nothing but noise."""
+    return [name for name in names if all(name in e.data for e in dataset) and _is_noise(dataset, name)]
 
 
-def _is_noise(record: object) -> bool:
-    if record is None:
-        return False
-    values = np.asarray(record, dtype=float)
-    kept = values[np.isfinite(values)]
-    return len(kept) > 0 and float(np.std(kept)) <= NOISE * noise_sd(kept)
+def _is_noise(dataset: Dataset, name: str) -> bool:
+    records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset]
+    white = float(np.median([white_noise_sd(record) for record in records]))
+    return white > 0.0 and float(np.std(np.concatenate(records))) <= NOISE * white
