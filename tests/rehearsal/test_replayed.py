@@ -76,6 +76,21 @@ def test_noise_of_a_logged_command_is_no_noise_of_the_sensor(pendulum: Path, rea
     assert 0.5 < found.sensors[0].total / white.noise < 2.5  # without it ten times as much, to drift as the replay does
 
 
+@pytest.mark.cpu(20)
+def test_outliers_are_no_noise(pendulum: Path) -> None:
+    """A diagnosis leaves them out, so a rehearsal must not need effects to be larger for them."""
+    rig, random = tl.load(pendulum), np.random.default_rng(5)
+    spoilt = []
+    for e in rig:
+        angle = e.data["joint_angle"].to_numpy(copy=True)
+        angle[random.choice(len(angle), 3, replace=False)] += 0.3
+        spoilt.append(replace(e, data=e.data.assign(joint_angle=angle)))
+    clean, with_spikes = (
+        simulated_rig(of).noise.sensors[0].total for of in (rig, replace(rig, experiments=tuple(spoilt)))
+    )
+    assert with_spikes == pytest.approx(clean, rel=0.2)
+
+
 def test_the_mean_power_is_the_variance() -> None:
     sensor = Sensor("q", 0.1, (0.6, 0.2))
     read = sensor.drawn(200_000, np.random.default_rng(1))

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, Experiment
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.case import make_case
@@ -46,8 +47,10 @@ def _following(rig: Dataset, asked: Sequence[str]) -> Drive:
 
 
 def _noise_of_logs(rig: Dataset) -> Noise:
-    """The noise with which simulated logs leave as much as those of the rig, once replayed. Noise of a logged command
-    that did not move the rig moves a replay: without it the sensors would seem to drift."""
+    """The noise with which simulated logs leave as much as those of the rig, once replayed. Outliers are no noise: a
+    diagnosis leaves them out. Noise of a logged command that did not move the rig moves a replay: without it the
+    sensors would seem to drift."""
+    rig = without_outliers(rig)
     case = make_case(rig)
     floor = floor_of_logs(rig, case)
     noise = noise_of_rig(rig, case, floor)
