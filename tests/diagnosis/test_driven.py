@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from tendonlab.diagnosis.answer.driven import Driven, drives
 from tendonlab.diagnosis.answer.motions import RATE, instants
 from tendonlab.diagnosis.answer.next_experiments import _separation, advise
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
@@ -44,7 +46,38 @@ def test_inputs_stay_within_the_range_and_the_rate_of_change_of_the_logs(fitter:
             low, high = min(map(np.min, seen)), max(map(np.max, seen))
             spare = 0.01 * (high - low)
             assert low - spare <= values.min() <= values.max() <= high + spare, (plan.words, name)
-            assert steepest(values, RATE) <= 1.1 * max(steepest(run, 50.0) for run in seen), (plan.words, name)
+            assert steepest(values, RATE / plan.slower) <= 1.1 * max(steepest(run, 50.0) for run in seen), (
+                plan.words,
+                name,
+            )
+
+
+def test_every_plan_moves_as_its_words_say(fitter: Fitter) -> None:
+    """What a plan is said to sweep is swept: no input is slowed until next to nothing of its path is left."""
+    for plan in drives(fitter.case):
+        way = np.ptp(np.cumsum(plan.inputs["input_velocity"])) * plan.slower / RATE
+        span = float(plan.words.split("±")[1].split(" ")[0])
+        assert way > 0.6 * span, plan.words
+        torques = np.concatenate([e.data["input_torque"] for e in fitter.case.experiments])
+        swept = np.ptp(plan.inputs["input_torque"]) > 0.5 * np.ptp(torques)
+        assert swept == (" while the " in plan.words), plan.words
+
+
+def with_torque(fitter: Fitter, torque: Callable[[np.ndarray, int], np.ndarray]) -> Case:
+    """The bench with other torques in its logs."""
+    runs = tuple(
+        replace(e, data=e.data.assign(input_torque=torque(e.time, k))) for k, e in enumerate(fitter.case.experiments)
+    )
+    return replace(fitter.case, experiments=runs)
+
+
+def test_a_weight_that_hangs_all_run_is_held(fitter: Fitter) -> None:
+    """No log shows how fast such an input may change."""
+    case = with_torque(fitter, lambda time, k: np.full(len(time), 1.0 + k))
+    planned = drives(case)
+    assert planned
+    assert all(np.ptp(plan.inputs["input_torque"]) == 0.0 for plan in planned)
+    assert not any(" while the " in plan.words for plan in planned)
 
 
 def test_each_begins_where_the_first_log_begins_and_ends_no_further_than_the_logs(fitter: Fitter) -> None:
@@ -53,7 +86,7 @@ def test_each_begins_where_the_first_log_begins_and_ends_no_further_than_the_log
     for plan in drives(fitter.case):
         assert plan.inputs["input_torque"][0] == pytest.approx(first["input_torque"].iloc[0], abs=1e-6)
         assert plan.inputs["input_velocity"][0] == pytest.approx(0.0, abs=1e-6)
-        way = np.cumsum(plan.inputs["input_velocity"]) / RATE
+        way = np.cumsum(plan.inputs["input_velocity"]) * plan.slower / RATE
         assert min(map(np.min, gone)) - 0.03 <= way.min() <= way.max() <= max(map(np.max, gone)) + 0.03, plan.words
 
 
@@ -106,7 +139,8 @@ def test_conditions_of_other_logs_are_proposed_and_stated(fitter: Fitter) -> Non
     assert other.words.endswith("at a wrap angle of 2.4 rad")
     assert other.stated(case) == {"add": {"wrap_angle": -1.8}}
     assert [plan.stated(case) for plan in usual] == [{}] * len(usual)
-    freer, bent = (next(p for p in (plan,)).played(case, case.system).log for plan in (other, usual[4]))
+    assert all(plan.words.endswith("under the nominal conditions") for plan in usual)
+    freer, bent = (plan.played(case, case.system).log for plan in (other, usual[4]))
     assert freer.add == {"wrap_angle": -1.8}
     torque = [log.data["output_torque"].to_numpy() for log in (freer, bent)]
     assert np.max(np.abs(torque[0] - torque[1])) > 0.1  # less friction over less wrap

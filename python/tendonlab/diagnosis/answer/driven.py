@@ -11,7 +11,18 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from tendonlab.data.units import convert
-from tendonlab.diagnosis.answer.motions import DURATION, RATE, Motion, Reach, eased, instants, paths, reach_of, rested
+from tendonlab.diagnosis.answer.motions import (
+    DURATION,
+    EASE,
+    RATE,
+    Motion,
+    Reach,
+    eased,
+    instants,
+    paths,
+    reach_of,
+    rested,
+)
 from tendonlab.diagnosis.answer.plan import Played
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
@@ -21,18 +32,29 @@ from tendonlab.simulation.catalog import InputInfo, unit
 from tendonlab.simulation.system import System
 
 PLACES, SPEEDS = ("angle", "displacement"), ("flow", "speed", "angular_speed")
+SLOWLY = "slowly goes through its range"
 SLOWEST, FULL = 0, 2  # of `paths`: those that are also made under changing loads
+MOST_SLOWED, SLOWED = 2.0, 1.1  # times, by which a plan may be slower than its motions, and from which its words say so
+EASES, LONGEST_EASE = 3.4, 2.0  # times speed over acceleration: how long it takes to reach a speed from rest; s
+MOVES = 1e-6  # of its range: what an input that moves changes by in a second
 SPARE = 0.1  # of the range of an output, by which a planned experiment may leave it
 LOADED = 0.9  # of the range of a load that is used: single samples may have been further out
 
 
 @dataclass(frozen=True)
 class Driven:
-    """Every input that drives the rig, SI, at `instants()`. `like`: index of the experiment whose conditions hold."""
+    """Every input that drives the rig, SI, at `time`. `like`: index of the experiment whose conditions hold. `slower`:
+    how many times longer than `instants()` it takes."""
 
     words: str
     inputs: Mapping[str, np.ndarray]
     like: int
+    slower: float = 1.0
+
+    @property
+    def time(self) -> np.ndarray:
+        """Of the samples, s."""
+        return instants() * self.slower
 
     def stated(self, case: Case) -> dict[str, dict[str, float]]:
         """The conditions of the experiment that it is like."""
@@ -41,17 +63,18 @@ class Driven:
 
     def reference(self, case: Case) -> pd.DataFrame:
         """`t` in s, and the inputs as the logs have them: their columns and units."""
-        specs = [(case.dataset.signals[name], values) for name, values in self.inputs.items()]
+        names = [row.name for row in case.system.info.inputs if row.name in self.inputs]
+        specs = [(case.dataset.signals[name], self.inputs[name]) for name in names]
         columns = {spec.column: convert(values, unit=spec.si_unit, to=spec.unit) for spec, values in specs}
-        return pd.DataFrame({"t": instants(), **columns})
+        return pd.DataFrame({"t": self.time, **columns})
 
     def played(self, case: Case, of: System, *, ports: bool = False) -> Played:
         """What a rig that `of` is would do and log, begun where the first training experiment began. Raises
         NumericalError where an output would leave the range that the logs show."""
         like, held = case.experiments[case.train[0]], case.experiments[self.like]
-        time = np.arange(0.0, instants()[-1], float(np.median(np.diff(like.time))))
+        time = np.arange(0.0, self.time[-1], float(np.median(np.diff(like.time))))
         columns = {name: np.full(len(time), _first(like.data[name])) for name in like.data.columns}
-        columns |= {name: np.interp(time, instants(), values) for name, values in self.inputs.items()}
+        columns |= {name: np.interp(time, self.time, values) for name, values in self.inputs.items()}
         there = replace(like, conditions=held.conditions, add=held.add, repeat=None, averaged=False)
         planned = replace(there, name="next", data=pd.DataFrame(columns, index=time))
         run = case.playing(planned).run(0, of, ports=ports)
@@ -64,18 +87,27 @@ class Driven:
 def drives(case: Case, *, rests: bool = False) -> list[Driven]:
     """Reversals at three speeds, a sweep and micro motion of the inputs that move the rig, other inputs held; and
     reversals under loads that change slowly or with the motion. `rests`: also reversals after a rest; else also the
-    last full reversals under the other conditions of the training experiments."""
+    full reversals, under a load that changes slowly where there is one, under the other conditions of the training
+    experiments. None that the inputs could follow only much more slowly than its words say."""
     given = [_Channel.of(case, row) for row in case.system.info.inputs if _is_logged(case, row)]
-    varying = [one for one in given if one.reach.travel > 0]
+    varying = [one for one in given if one.reach.speed > MOVES * one.reach.travel > 0]
     moved = [one for one in varying if one.row.dimension in (*PLACES, *SPEEDS)]
     moved = moved or [one for one in varying if one.row.required]
     loads = [one for one in varying if one not in moved and not one.row.limit and one.row.dimension != "ratio"]
     if not moved:
         return []
     shapes, others = [_shapes(one, rests) for one in moved], [one for one in given if one not in moved]
-    made = [Driven(said, inputs, case.train[0]) for said, inputs in _combined(moved, loads, others, shapes)]
+    others = [one for one in others if one not in loads]
+    made = [
+        Driven(said, inputs, case.train[0], slower) for said, inputs, slower in _combined(moved, loads, others, shapes)
+    ]
     full = [plan for plan in made if plan.words.startswith(shapes[0][FULL].words)]
-    return made + ([] if rests else [_under(case, full[min(1, len(full) - 1)], i) for i in _other_conditions(case)])
+    differing = _other_conditions(case)
+    if not differing or not full:
+        return made
+    chosen = next((plan for plan in full if SLOWLY in plan.words), full[0])
+    usual = [_under(case, plan, case.train[0]) for plan in made]
+    return usual + ([] if rests else [_under(case, chosen, i) for i in differing])
 
 
 def _other_conditions(case: Case) -> list[int]:
@@ -97,25 +129,32 @@ def _under(case: Case, plan: Driven, i: int) -> Driven:
     """The plan under the conditions of experiment i."""
     changed = _conditions(case, i)
     values = (f"{words(n)} of {v:.3g} {unit_text(case.system.unit(n))}".rstrip() for n, v in changed.items())
-    return replace(plan, words=f"{plan.words}, at a {listing(values)}" if changed else plan.words, like=i)
+    where = f"at a {listing(values)}" if changed else "under the nominal conditions"
+    return replace(plan, words=f"{plan.words}, {where}", like=i)
 
 
 def _combined(
     moved: list[_Channel], loads: list[_Channel], others: list[_Channel], shapes: list[list[Motion]]
-) -> Iterator[tuple[str, dict[str, np.ndarray]]]:
-    """Words and inputs of each plan."""
-    held = {one.row.name: one.along(one.still) for one in others}
-    slowly = {one.row.name: one.along(one.swept(np.sin(2 * np.pi * instants() / DURATION))) for one in loads}
+) -> Iterator[tuple[str, dict[str, np.ndarray], float]]:
+    """Words and inputs of each plan that the inputs can follow, and how many times slower than `instants()`."""
+    channels = [*moved, *loads, *others]
+    resting, still = [one.rest for one in loads], [one.rest for one in others]
+    slowly = [one.swept(-np.cos(2 * np.pi * instants() / DURATION)) for one in loads]
     place = listing(one.place for one in loads)
     for k, together in enumerate(zip(*shapes, strict=True)):  # what moves a rig does so
-        said = together[0].words
-        moving = {one.row.name: one.along(motion.path) for one, motion in zip(moved, together, strict=True)}
-        yield said, held | moving
+        said, moving = together[0].words, [motion.path for motion in together]
+        asked = [(said, resting)]
         if loads and k in (SLOWEST, FULL):
-            yield f"{said} while the {place} slowly goes through its range", held | moving | slowly
+            asked.append((f"{said} while the {place} {SLOWLY}", slowly))
         if loads and k == FULL:
-            with_it = {one.row.name: one.along(one.swept(_unit(together[0].path))) for one in loads}
-            yield f"{said} while the {place} follows the motion", held | moving | with_it
+            with_it = [one.swept(_unit(together[0].path)) for one in loads]
+            asked.append((f"{said} while the {place} follows the motion", with_it))
+        for text, loading in asked:
+            followed = list(zip(channels, [*moving, *loading, *still], strict=True))
+            slower = max(one.slowing(path) for one, path in followed)
+            if slower <= MOST_SLOWED:
+                inputs = {one.row.name: one.along(path, slower) for one, path in followed}
+                yield text + (f", {slower:.1f} times slower" if slower > SLOWED else ""), inputs, slower
 
 
 @dataclass(frozen=True)
@@ -142,25 +181,33 @@ class _Channel:
     @property
     def place(self) -> str:
         """Its noun in a description."""
-        return words(self.row.name.removesuffix("_velocity") if self.row.dimension in SPEEDS else self.row.name)
+        name = self.row.name
+        return f"{words(name.removesuffix('_velocity'))} position" if self.row.dimension in SPEEDS else words(name)
 
     @property
-    def still(self) -> np.ndarray:
-        return np.full(len(instants()), self.reach.middle)
+    def rest(self) -> np.ndarray:
+        """The path of an input that is held: in the middle of what the logs show, or where it starts if it cannot be
+        led there."""
+        middle = np.full(len(instants()), self.reach.middle)
+        return middle if self.slowing(middle) <= MOST_SLOWED else np.full(len(instants()), self.start)
 
     def swept(self, shape: np.ndarray) -> np.ndarray:
         """Its range along a shape from -1 to 1."""
         return np.asarray(self.reach.middle + LOADED * self.reach.travel * shape)
 
-    def along(self, path: np.ndarray) -> np.ndarray:
-        """The input that follows a path: led there from its start, and played as slowly as its speed and acceleration
-        in the logs ask for."""
-        led = CubicSpline(instants(), _led(path, self.start, self.reach))
+    def slowing(self, path: np.ndarray) -> float:
+        """How many times slower the input must follow a path, for its speed and acceleration in the logs."""
+        led = self._to(path)
         speed, bend = (float(np.max(np.abs(led(instants(), order)))) for order in (1, 2))
-        slower = max(1.0, _over(speed, self.reach.speed), np.sqrt(_over(bend, self.reach.acceleration)))
-        if self.row.dimension in SPEEDS:
-            return np.asarray(led(instants() / slower, 1) / slower)
-        return np.asarray(led(instants() / slower))
+        return max(1.0, _over(speed, self.reach.speed), float(np.sqrt(_over(bend, self.reach.acceleration))))
+
+    def along(self, path: np.ndarray, slower: float) -> np.ndarray:
+        """The input that follows a path, led there from its start, so many times slower."""
+        led = self._to(path)
+        return np.asarray(led(instants(), 1) / slower if self.row.dimension in SPEEDS else led(instants()))
+
+    def _to(self, path: np.ndarray) -> CubicSpline:
+        return CubicSpline(instants(), _led(path, self.start, self.reach))
 
 
 def _led(path: np.ndarray, start: float, reach: Reach) -> np.ndarray:
@@ -169,11 +216,13 @@ def _led(path: np.ndarray, start: float, reach: Reach) -> np.ndarray:
     lasts = max(1.5 * _over(away, reach.speed), np.sqrt(6.0 * _over(away, reach.acceleration)))
     num = int(np.ceil(min(lasts, 0.5 * DURATION) * RATE))
     x = np.arange(num) / max(num, 1)
-    return np.concatenate([start + x**2 * (3 - 2 * x) * (path[0] - start), eased(path)])[: len(path)]
+    first = RATE * abs(float(path[1] - path[0]))
+    gently = eased(path, min(max(EASE, EASES * _over(first, reach.acceleration)), LONGEST_EASE))
+    return np.concatenate([start + x**2 * (3 - 2 * x) * (path[0] - start), gently])[: len(path)]
 
 
 def _over(part: float, whole: float) -> float:
-    return part / whole if part > 0.0 else 0.0
+    return 0.0 if not part > 0.0 else part / whole if whole > 0.0 else np.inf
 
 
 def _shapes(channel: _Channel, rests: bool) -> list[Motion]:

@@ -47,9 +47,9 @@ def instants() -> np.ndarray:
     return np.arange(0.0, DURATION, 1 / RATE)
 
 
-def eased(path: np.ndarray) -> np.ndarray:
-    """A path that leaves its first position from rest."""
-    x = np.clip(instants() / EASE, 0, 1)
+def eased(path: np.ndarray, seconds: float = EASE) -> np.ndarray:
+    """A path that leaves its first position from rest within `seconds`."""
+    x = np.clip(instants() / seconds, 0, 1)
     return np.asarray(path[0] + x**2 * (3 - 2 * x) * (path - path[0]))
 
 
@@ -116,8 +116,9 @@ def reach_of(runs: Sequence[tuple[np.ndarray, np.ndarray]], unit: str) -> Reach:
 
 
 def _reversals(reach: Reach, place: str, kind: str, share: float, of_speed: float) -> Motion:
-    """Triangles, their corners rounded to the acceleration that was seen."""
-    span, speed = share * reach.travel, of_speed * reach.speed
+    """Triangles, their corners rounded to the acceleration that was seen: at least one, so narrow that the rig goes
+    through it at the speed that was seen."""
+    span, speed = min(share * reach.travel, reach.speed * DURATION / 4), of_speed * reach.speed
     cycles = max(1.0, speed * DURATION / (4 * span))
     triangle = 2 / np.pi * np.arcsin(np.sin(2 * np.pi * cycles * instants() / DURATION))
     reached = 4 * span * cycles / DURATION
