@@ -82,11 +82,11 @@ def diagnose(
 
 
 @with_one_blas_thread
-def best_model(dataset: Dataset) -> Fitted:
+def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
     """The model of `dataset` that a diagnosis ends with, without its answer. Raises as `diagnose`."""
     system = dataset.system()
     _require_samples(dataset, system)
-    with open_workshop(None, progress=False) as shop:
+    with open_workshop(None, progress=progress) as shop:
         search, _, _ = _search(dataset, system, shop)
         return search.final
 

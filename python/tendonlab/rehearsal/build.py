@@ -22,10 +22,12 @@ LESS = 0.7  # of the noise of a sensor that must be enough beside noise of the c
 TOO_MUCH = 1.3  # times the power of the floor that repeats may leave with noise of the command
 
 
-def simulated_rig(rig: Dataset, planned: tuple[Experiment, ...] | None = None) -> SimulatedRig:
+def simulated_rig(
+    rig: Dataset, planned: tuple[Experiment, ...] | None = None, *, progress: bool = False
+) -> SimulatedRig:
     """Rigs like the user's, in the experiments of its logs or in `planned` ones. The noise is that of the logs where
     there are any."""
-    noise = _noise_of_logs(rig) if rig.experiments else stated_noise(rig)
+    noise = _noise_of_logs(rig, progress=progress) if rig.experiments else stated_noise(rig)
     if planned is None:
         return _driven(rig, noise)
     drive = _following(rig, asked) if (asked := followed(planned, rig)) else None
@@ -46,13 +48,13 @@ def _following(rig: Dataset, asked: Sequence[str]) -> Drive:
     return drive
 
 
-def _noise_of_logs(rig: Dataset) -> Noise:
+def _noise_of_logs(rig: Dataset, *, progress: bool) -> Noise:
     """The noise with which simulated logs leave as much as those of the rig, once replayed. Outliers are no noise: a
     diagnosis leaves them out. Noise of a logged command that did not move the rig moves a replay: without it the
     sensors would seem to drift."""
     rig = without_outliers(rig)
     case = make_case(rig)
-    floor = floor_of_logs(rig, case)
+    floor = floor_of_logs(rig, case, progress=progress)
     noise = noise_of_rig(rig, case, floor)
     if floor is None:
         return noise

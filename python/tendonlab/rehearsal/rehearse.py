@@ -76,7 +76,8 @@ def rehearse(
     seconds = 60.0 * positive("minutes", minutes, "min")
     dataset = _dataset(rig, plan)
     names = _checked_effects(dataset, effects)
-    rigs = simulated_rig(dataset, None if plan is None else planned_experiments(Path(plan), dataset))
+    planned = None if plan is None else planned_experiments(Path(plan), dataset)
+    rigs = simulated_rig(dataset, planned, progress=progress)
     judge = partial(library_diagnose, progress=False) if diagnose is None else diagnose
     store = Store(None if out is None else Path(out), settings_of(rigs, gaps, seed, diagnose))
     gauge = Gauge(rigs)

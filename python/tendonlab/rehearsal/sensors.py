@@ -91,7 +91,7 @@ def stated_noise(rig: Dataset) -> Noise:
     return Noise(tuple(sensors), RUN_TO_RUN, repeated=False)
 
 
-def floor_of_logs(rig: Dataset, case: Case) -> Floor | None:
+def floor_of_logs(rig: Dataset, case: Case, *, progress: bool = False) -> Floor | None:
     """What the repeats of the rig leave; where nothing repeats, what the best model of a diagnosis leaves, with its
     memory: the noise of most rigs has a slow part, which no stated `noise_sd` holds. None where no model runs."""
     labels = [e.repeat for e in rig if e.repeat is not None]
@@ -101,7 +101,7 @@ def floor_of_logs(rig: Dataset, case: Case) -> Floor | None:
         if floor.repeated:
             return floor
     try:
-        best = best_model(rig)
+        best = best_model(rig, progress=progress)
     except (DatasetError, NumericalError):
         return None
     return remaining(case, at_the_fit(case, best))
