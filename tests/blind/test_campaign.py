@@ -116,8 +116,25 @@ def test_a_campaign_of_other_settings_is_refused(sealed: Path, tmp_path: Path) -
     sealed.mkdir()
     settings = {"counts": [2, 2], "seeds": list(SEEDS)}
     module.Journal(sealed / JOURNAL, settings)._save()
-    with pytest.raises(ValueError, match=r"counts = \[2, 3\]: expected \[2, 2\], with which this campaign was begun"):
-        module.Journal.open(sealed / JOURNAL, settings | {"counts": [2, 3]})
+    with pytest.raises(ValueError, match=r"counts = \[2, 3\]: expected \[2, 2\], with which this was begun"):
+        module.Journal.open(sealed / JOURNAL, settings | {"counts": [2, 3]}, out)
+
+
+def test_another_time_limit_is_another_campaign(sealed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module.Journal, "through", lambda self, work: self._save() or iter(()))
+    made(tmp_path / "out", sealed, timeout=60.0)
+    made(tmp_path / "out", sealed, timeout=60.0)
+    with pytest.raises(ValueError, match=r"timeout = 90\.0: expected 60\.0, with which this was begun"):
+        made(tmp_path / "out", sealed, timeout=90.0)
+
+
+def test_reports_are_not_scored_against_other_truths(sealed: Path, tmp_path: Path) -> None:
+    """Where the journal is gone, or the truths of a series are, nothing is drawn over the cases."""
+    out = tmp_path / "out"
+    (out / "seed-40000001" / "cases").mkdir(parents=True)
+    with pytest.raises(ValueError, match=r"campaign.json is missing: expected it beside the truths of .*seed-40000001"):
+        made(out, sealed)
+    assert not sealed.exists()
 
 
 def test_the_test_series_is_told_on_request(sealed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
