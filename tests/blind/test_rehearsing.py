@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -126,19 +127,26 @@ def test_predicted_and_realised_shares(folders: tuple[Path, Path]) -> None:
     assert result.effects["points"].to_dict() == pytest.approx({BRISTLE: 50.0, OFFSET: -50.0}, abs=0.1)
     assert result.repeats["realised"].to_dict() == {True: "2 of 4"}
     assert result.sizes["predicted %"].loc[0.3] < 15 < 85 < result.sizes["predicted %"].loc[3.0]
-    assert "predicted less realised, over 1 designs: " in str(result)
+    assert "predicted less realised, over 1 design: " in str(result)
     assert result.to_dict()["format"] == "tendonlab-score/1"  # a diagnosis must not read it
 
 
 def test_a_case_without_a_report_was_not_found(folders: tuple[Path, Path], tmp_path: Path) -> None:
-    from shutil import copytree
-
-    out = Path(copytree(folders[1], tmp_path / "out"))
+    out = Path(shutil.copytree(folders[1], tmp_path / "out"))
     file = out / "design-001" / "reports" / "verdicts.json"
     told = json.loads(file.read_text())
     told["reports"] = {name: {"verdict": "failed"} for name in told["reports"]}
     file.write_text(json.dumps(told))
     assert compare([(folders[0], out)]).pooled["realised"].tolist() == ["0 of 4"]
+
+
+@pytest.mark.parametrize("lost", ["design-001/case-002.toml", "design-001"])
+def test_a_missing_truth_is_named(folders: tuple[Path, Path], tmp_path: Path, lost: str) -> None:
+    """Of a case, and of a design: neither is left out in silence."""
+    sealed = Path(shutil.copytree(folders[0], tmp_path / "truth"))
+    (sealed / lost).rename(tmp_path / "lost")
+    with pytest.raises(ValueError, match=r"truth/design-001/case-00\d\.toml is missing: expected the truth of"):
+        compare([(sealed, folders[1])])
 
 
 def test_a_report_is_judged_as_the_diagnosis_it_was() -> None:

@@ -80,6 +80,15 @@ def folders(tmp_path: Path) -> tuple[Path, Path]:
     return sealed, reports
 
 
+def rewrite(reports: Path, name: str, given: Any) -> None:
+    """Another report on a case, hashed as if it had been written at once."""
+    (reports / name / REPORT).write_text(json.dumps(given), encoding="utf-8")
+    content = json.loads((reports / VERDICTS).read_text(encoding="utf-8"))
+    digest = hashlib.sha256((reports / name / REPORT).read_bytes()).hexdigest()
+    content["reports"][name] = {"verdict": given["verdict"], "sha256": digest}
+    (reports / VERDICTS).write_text(json.dumps(content), encoding="utf-8")
+
+
 @pytest.fixture
 def found(folders: tuple[Path, Path]) -> Results:
     return results([folders])
@@ -115,6 +124,16 @@ def test_effects_that_were_reported_in_place_of_the_true_one_are_counted(
     (reports / VERDICTS).write_text(json.dumps(verdicts), encoding="utf-8")
     again = results([(sealed, reports)]).confused_effects()
     assert again["joint:stribeck"] == (3, {"failed": 1})
+
+
+def test_an_effect_that_nobody_reported_stands_in_no_place(folders: tuple[Path, Path]) -> None:
+    """Of a report that selects nothing the verdict counts, whichever effect it ranks first; a right effect that was
+    selected stands in nobody's place."""
+    rewrite(folders[1], "weak", report("no_gap"))
+    given = report("effect", "joint:stribeck")
+    given["effects"][1]["probability"] = 0.95  # not selected
+    rewrite(folders[1], "strong", given)
+    assert results([folders]).confused_effects() == {"load:offset": (1, {"no_gap": 1})}
 
 
 def test_another_map_changes_the_probabilities_and_the_page_says_so(folders: tuple[Path, Path], tmp_path: Path) -> None:

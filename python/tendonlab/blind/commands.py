@@ -87,7 +87,7 @@ def _add_drawn(drawing: argparse.ArgumentParser) -> None:
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
     text = "draw by a protocol, `standard` or a file; the options below change it"
     drawing.add_argument("--protocol", metavar="NAME", help=text)
-    text = "what the series is for: development, calibration or test; the protocol refuses seeds that serve another one (default: what the seed serves)"
+    text = "development, calibration or test (default: what the seed serves); seeds that serve another one are refused"
     drawing.add_argument("--purpose", default="", help=text)
     _add_shares(drawing)
 

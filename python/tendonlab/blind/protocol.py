@@ -77,11 +77,11 @@ def read(where: str | Path = STANDARD) -> Protocol:
     content = ((files("tendonlab.blind") / FILE) if str(where) == STANDARD else Path(where)).read_bytes()
     try:
         given = tomllib.loads(content.decode("utf-8"))
+        _require(given.get("format") == FORMAT, "format", given.get("format"), repr(FORMAT))
         _refuse_others("", given, ("format", "version", *TABLES, "changes"))
-        _require("format", given.get("format"), repr(FORMAT), lambda x: x == FORMAT)
-        _require("version", given.get("version"), *TYPES["int"])
+        _require(_is_whole(given.get("version")), "version", given.get("version"), "a whole number")
         for name in TABLES:
-            _require(name, given.setdefault(name, {}), "a table", lambda x: isinstance(x, dict))
+            _require(isinstance(given.setdefault(name, {}), dict), name, given[name], "a table")
         options, seeds = _options(given["draw"]), _seeds(given["seeds"])
         _refuse_other_rigs(given["rigs"])
     except ValueError as error:
@@ -97,11 +97,14 @@ def listed_of(kind: str) -> dict[str, object]:
 
 
 def _options(given: Mapping[str, Any]) -> dict[str, Any]:
-    types = {field.name: field.type.removesuffix(" | None") for field in fields(Options)}
+    types = {field.name: str(field.type).removesuffix(" | None") for field in fields(Options)}
     _refuse_others("draw.", given, tuple(types))
     for name, value in given.items():
-        _require(f"draw.{name}", value, *TYPES[types[name]])
-    options = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
+        expected, is_right = TYPES[types[name]]
+        _require(is_right(value), f"draw.{name}", value, expected)
+    options: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in given.items()
+    }
     try:
         Options(**options)
     except ValueError as error:
@@ -111,7 +114,7 @@ def _options(given: Mapping[str, Any]) -> dict[str, Any]:
 
 def _seeds(given: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
     for purpose, ends in given.items():
-        _require(f"seeds.{purpose}", ends, "two whole numbers", lambda x: _are_two(x) and all(map(_is_whole, x)))
+        _require(_are_two(ends) and all(map(_is_whole, ends)), f"seeds.{purpose}", ends, "two whole numbers")
     seeds = {purpose: (first, last) for purpose, (first, last) in given.items()}
     _refuse_shared(seeds)
     return seeds
@@ -120,12 +123,12 @@ def _seeds(given: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
 def _refuse_other_rigs(given: Mapping[str, Any]) -> None:
     _refuse_others("rigs.", given, tuple(SYSTEMS))
     for kind, listed in given.items():
-        _require(f"rigs.{kind}", listed, "a table", lambda x: isinstance(x, dict))
+        _require(isinstance(listed, dict), f"rigs.{kind}", listed, "a table")
         own = listed_of(kind)
         _refuse_others(f"rigs.{kind}.", listed, tuple(own))
         for name, value in own.items():
-            what = f"what this generator draws, {value}"
-            _require(f"rigs.{kind}.{name}", listed.get(name), what, lambda x, value=value: x == value)
+            found = listed.get(name)
+            _require(found == value, f"rigs.{kind}.{name}", found, f"what this generator draws, {value}")
 
 
 def _is_number(value: object) -> bool:
@@ -149,14 +152,14 @@ TYPES: dict[str, tuple[str, Callable[[Any], bool]]] = {  # of the fields of `Opt
 }
 
 
-def _require(name: str, value: object, expected: str, is_right: Callable[[Any], bool]) -> None:
-    if not is_right(value):
+def _require(is_right: bool, name: str, value: object, expected: str) -> None:
+    if not is_right:
         raise ValueError(f"{name} = {value!r}: expected {expected}")
 
 
 def _refuse_others(table: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
     for name, value in given.items():
-        _require(f"{table}{name}", value, f"one of {', '.join(known)}", lambda _, name=name: name in known)
+        _require(name in known, f"{table}{name}", value, f"one of {', '.join(known)}")
 
 
 def _refuse_shared(seeds: Mapping[str, tuple[int, int]]) -> None:

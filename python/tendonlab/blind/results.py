@@ -127,14 +127,16 @@ class Results:
         return pd.crosstab(self.cases["truth"], self.cases["verdict"])
 
     def confused_effects(self) -> dict[str, tuple[int, dict[str, int]]]:
-        """Of each single effect that was not reported first everywhere: on how many rigs it was missing, and how often
-        something else was reported first, most frequent first. Where no effect was reported, the verdict counts."""
+        """Of each single effect that was not the most probable one everywhere: on how many rigs it was missing, and how
+        often something else was reported, most frequent first: the first effect that was selected, or the verdict where
+        none was."""
         found: dict[str, tuple[int, dict[str, int]]] = {}
         for effect, cases in self.single().groupby("effect"):
-            wrong = cases[cases["ranked_first"] < 1.0]
-            told = wrong["first"].where(wrong["first"] != "", wrong["verdict"])
-            if len(told):
-                found[str(effect)] = (len(cases), {str(name): int(n) for name, n in told.value_counts().items()})
+            wrong = cases[(cases["ranked_first"] < 1.0) & (cases["established"] < 1.0)]
+            first = wrong["selected"].str.split(",").str[0]
+            reported = first.where(first != "", wrong["verdict"])[first != effect]
+            if len(reported):
+                found[str(effect)] = (len(cases), {str(name): int(n) for name, n in reported.value_counts().items()})
         return found
 
     def single(self) -> pd.DataFrame:

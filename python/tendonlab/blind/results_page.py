@@ -58,7 +58,7 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     confused = found.confused_effects()
     if confused:
         yield "## Effects reported in place of the true one"
-        yield "Single effects: the most probable effect where that is wrong; the verdict where no effect is reported."
+        yield "Where the most probable effect is a wrong one: the first that was selected; the verdict where none was."
         yield _table(["missing effect", "reported first instead"], [_confused(n, *of) for n, of in confused.items()])
     yield from _probabilities(found, images)
     yield "## Wrong answers"
