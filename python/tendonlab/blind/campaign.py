@@ -17,6 +17,7 @@ from .calibrating import calibrate, write_map
 from .drawing import draw
 from .oracle import tell
 from .protocol import STANDARD, read
+from .reach import refuse_within_reach
 from .results import results
 from .results_page import write
 from .resuming import plain_settings, refuse_other
@@ -88,14 +89,11 @@ def campaign(
     `seeds` and `counts`: of the series to fit on and of the one to test. `changed`: options of the protocol that are
     others here. `tells`: whether `tell` diagnoses the test series once more. `command`: what the page says made it.
     Truths, and a journal of what is done, go into the folder `sealed`. A campaign that was interrupted goes on where it
-    stopped. Raises ValueError where a seed serves another purpose, where `sealed` lies in `out`, and where a campaign
-    of other settings was begun there.
+    stopped. Raises ValueError where a seed serves another purpose, where `sealed` and `out` lie in each other, and where
+    a campaign of other settings was begun there.
     """
     out, sealed = Path(out).resolve(), Path(sealed).resolve()
-    if out == sealed or out in sealed.parents:
-        raise ValueError(
-            f"{sealed}: the truths lie where the diagnosis could read them; expected a folder outside {out}"
-        )
+    refuse_within_reach(sealed, out)
     by = read(protocol)
     of_purpose = dict(zip(("calibration", "test"), zip(seeds, counts, strict=True), strict=True))
     drawn = {purpose: by.drawn(seed, purpose=purpose, changed=changed) for purpose, (seed, _) in of_purpose.items()}
