@@ -89,8 +89,8 @@ def campaign(
     `seeds` and `counts`: of the series to fit on and of the one to test. `changed`: options of the protocol that are
     others here. `tells`: whether `tell` diagnoses the test series once more. `command`: what the page says made it.
     Truths, and a journal of what is done, go into the folder `sealed`. A campaign that was interrupted goes on where it
-    stopped. Raises ValueError where a seed serves another purpose, where `sealed` and `out` lie in each other, and where
-    a campaign of other settings was begun there.
+    stopped. Raises ValueError where a seed serves another purpose, where `sealed` and `out` lie in each other, where a
+    campaign of other settings was begun there, and where the truths of series in `out` lie elsewhere.
     """
     out, sealed = Path(out).resolve(), Path(sealed).resolve()
     refuse_within_reach(sealed, out)
