@@ -63,9 +63,7 @@ def run_all(
         done = tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case", disable=not progress)
         for future in done:
             name, message = pending[future], future.result()
-            if (
-                message
-            ):  # written here, where an interrupt from the keyboard, which also ends the diagnoses, comes first
+            if message:  # not written by the thread: an interrupt ends the diagnosis, too, which is no failure
                 failed[name] = message
                 write_at_once(failures[name], f"{message}\n")
     return failed
