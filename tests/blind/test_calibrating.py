@@ -150,7 +150,7 @@ def test_the_spread_of_the_calibration_error_counts_rigs_and_not_their_effects()
 
 @pytest.mark.parametrize(("fitted_on", "refused"), [("test", True), ("calibration", False)])
 def test_cases_that_were_drawn_to_test_are_never_fitted(tmp_path: Path, fitted_on: str, refused: bool) -> None:
-    origin = f'[protocol]\nversion = 3\nsha256 = "ab"\npurpose = "{fitted_on}"\n'
+    origin = f'[protocol]\nversion = 3\nsha256 = "ab"\npurpose = "{fitted_on}"\nchanged = ["system"]\n'
     draw = '[draw]\nsystem = "rigid_joint"\nrepeats = true\n'
     truth = f'verdict = "no_gap"\neffects = []\naccept = []\n{draw}{origin}'
     (tmp_path / "case-001.toml").write_text(truth, encoding="utf-8")
@@ -164,8 +164,14 @@ def test_cases_that_were_drawn_to_test_are_never_fitted(tmp_path: Path, fitted_o
     else:
         content = calibrate([(tmp_path, tmp_path)])
         assert content["series"]["protocols"] == ["3 ab"]
+        assert content["series"]["changed"] == ["system"]
         with pytest.raises(ValueError, match="this case was drawn for calibration"):
             calibrate(test=[(tmp_path, tmp_path)])
+
+
+def test_a_series_without_evidence_is_no_reason_to_keep_the_shipped_map(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"reports: expected reports with evidence, found none"):
+        calibrate([(tmp_path, tmp_path / "reports")])
 
 
 def test_a_missing_report_is_named(tmp_path: Path) -> None:

@@ -110,14 +110,32 @@ def test_a_campaign_of_other_settings_is_refused(sealed: Path, tmp_path: Path) -
     out = tmp_path / "out"
     with pytest.raises(ValueError, match="seed = 70000001: expected one from 40000000 to 69999999"):
         made(out, sealed, seeds=SEEDS[::-1])
-    with pytest.raises(ValueError, match="expected a folder outside"):
-        made(out, out / "sealed")
+    for within in (out / "sealed", out, tmp_path):
+        with pytest.raises(ValueError, match="expected a folder apart from"):
+            made(out, within)
     assert not out.exists()
     sealed.mkdir()
     settings = {"counts": [2, 2], "seeds": list(SEEDS)}
     module.Journal(sealed / JOURNAL, settings)._save()
-    with pytest.raises(ValueError, match=r"counts = \[2, 3\]: expected \[2, 2\], with which this campaign was begun"):
-        module.Journal.open(sealed / JOURNAL, settings | {"counts": [2, 3]})
+    with pytest.raises(ValueError, match=r"counts = \[2, 3\]: expected \[2, 2\], with which this was begun"):
+        module.Journal.open(sealed / JOURNAL, settings | {"counts": [2, 3]}, out)
+
+
+def test_another_time_limit_is_another_campaign(sealed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module.Journal, "through", lambda self, work: self._save() or iter(()))
+    made(tmp_path / "out", sealed, timeout=60.0)
+    made(tmp_path / "out", sealed, timeout=60.0, changed=RIGID | {"pairs": 0.25})  # as the protocol has it
+    with pytest.raises(ValueError, match=r"timeout = 90\.0: expected 60\.0, with which this was begun"):
+        made(tmp_path / "out", sealed, timeout=90.0)
+
+
+def test_reports_are_not_scored_against_other_truths(sealed: Path, tmp_path: Path) -> None:
+    """Where the journal is gone, or the truths of a series are, nothing is drawn over the cases."""
+    out = tmp_path / "out"
+    (out / "seed-40000001" / "cases").mkdir(parents=True)
+    with pytest.raises(ValueError, match=r"campaign.json is missing: expected it beside the truths of .*seed-40000001"):
+        made(out, sealed)
+    assert not sealed.exists()
 
 
 def test_the_test_series_is_told_on_request(sealed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

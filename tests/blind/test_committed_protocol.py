@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import tomllib
 from dataclasses import replace
 from importlib.resources import files
@@ -99,7 +100,26 @@ def test_seeds_of_another_purpose_are_refused() -> None:
         read().drawn(7, purpose="test")
     with pytest.raises(ValueError, match="purpose = 'tests': expected one of development, calibration, test"):
         read().drawn(SEED, purpose="tests")
-    assert read().drawn(7)["origin"]["purpose"] == ""
+    with pytest.raises(ValueError, match=r"seed = 100000000: expected one from 0 to 39999999 \(development\), "):
+        read().drawn(100_000_000)
+
+
+@pytest.mark.parametrize(("seed", "purpose"), [(7, "development"), (40_000_000, "calibration"), (99_999_999, "test")])
+def test_a_seed_serves_its_purpose_also_where_none_is_given(seed: int, purpose: str) -> None:
+    """Else cases of a test seed could be fitted."""
+    assert read().drawn(seed)["origin"]["purpose"] == purpose
+
+
+@pytest.mark.parametrize("name", ["strengths", "second"])
+def test_other_strengths_are_those_of_all_pairs(name: str) -> None:
+    """The strong and the weak ones of the protocol give way, and the truth says so."""
+    options = read().drawn(SEED, changed={name: (2.0, 4.0)})
+    assert options.pop("origin")["changed"] == ["dominant", name]
+    usual = {"strengths": (0.5, 100.0), "second": (2.0, 4.0)} | {name: (2.0, 4.0)}
+    pairs = [case for case in plan(SEED, 300, **options) if case.is_pair]
+    assert {(case.strengths, case.second) for case in pairs} == {(usual["strengths"], usual["second"])}
+    assert read().drawn(SEED, changed={"strengths": (0.5, 100.0)})["dominant"] == 0.4
+    assert read().drawn(SEED, changed={name: (2.0, 4.0), "dominant": 0.2})["dominant"] == 0.2
 
 
 @pytest.mark.parametrize(
@@ -107,18 +127,33 @@ def test_seeds_of_another_purpose_are_refused() -> None:
     [
         ("tendonlab-protocol/1", "tendonlab-protocol/2", "format = 'tendonlab-protocol/2'"),
         ("pairs = 0.25", "pairs = 1.25", "pairs = 1.25: expected a share"),
-        ("pairs = 0.25", "couples = 0.25", r"draw\.couples: expected one of system, "),
+        ("pairs = 0.25", "couples = 0.25", r"draw\.couples = 0\.25: expected one of system, "),
         ("met_within = 0.18", "met_within = 0.1", "met_within = 0.1: expected more than 0.12"),
         ("[40_000_000", "[30_000_000", "seeds 30000000 to 39999999 serve development and calibration"),
         ("test = [70", "trial = [70", "expected those of development, calibration, test"),
-        ('"lorentzian"', '"cauchy"', "rigs.two_inertia: expected what this generator draws"),
+        ('"lorentzian"', '"cauchy"', r"rigs\.two_inertia\.forms = .*'cauchy'.*: expected what this generator draws"),
         ("nothing_share = 0.15", "nothing_share = 0.5", "expected at most 1"),
+        ("[draw]", "[drawn]", r"drawn = .*: expected one of format, version, draw"),
+        ("[rigs.ccsrm]", "[rigs.ccsr]", r"rigs\.ccsr = .*: expected one of two_inertia, "),
+        (
+            "[rigs.ccsrm]\nsample_times",
+            "[rigs.ccsrm]\nperiods",
+            r"rigs\.ccsrm\.periods = \[0\.01, 0\.004\]: expected one of",
+        ),
+        ("strengths = [0.5, 100.0]", "strengths = [0.5]", r"draw\.strengths = \[0\.5\]: expected two numbers"),
+        ("pairs = 0.25", 'pairs = "a"', "draw.pairs = 'a': expected a number"),
+        ("pairs = 0.25", "pairs = true", "draw.pairs = True: expected a number"),
+        ("tries = 3", "tries = 2.5", "draw.tries = 2.5: expected a whole number"),
+        ('system = "mixed"', "system = 1", "draw.system = 1: expected a text"),
+        ("version = 1", "version = 1.5", "version = 1.5: expected a whole number"),
+        ("69_999_999]", "69_999_999.5]", r"seeds\.calibration = \[40000000, 69999999\.5\]: expected two whole numbers"),
+        ("pairs = 0.25", "pairs = ", "Invalid value"),
     ],
 )
 def test_a_protocol_that_contradicts_itself_or_the_generator_is_refused(
     old: str, new: str, message: str, tmp_path: Path
 ) -> None:
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(ValueError, match=rf"^{re.escape(str(tmp_path))}/own.toml: .*{message}"):
         read(written(tmp_path, old, new))
 
 
@@ -171,6 +206,9 @@ def test_an_interrupted_draw_goes_on_with_the_same_bits(tmp_path: Path) -> None:
         assert contents(one) == contents(other)
     with pytest.raises(FileExistsError, match="expected a new folder"):
         draw(3, 3, broken, sealed=rest, **options)
+    with pytest.raises(FileExistsError, match="cases exists: expected a new folder"):
+        draw(3, 3, broken, sealed=tmp_path / "elsewhere", resumes=True, **options)
+    assert contents(whole) == contents(broken)
 
 
 def contents(folder: Path) -> dict[str, str]:

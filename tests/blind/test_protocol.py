@@ -242,6 +242,27 @@ def test_case_that_takes_too_long_has_failed(drawn: Drawn, tmp_path: Path, monke
     assert verdicts["case-001"] == {"verdict": "failed", "message": "no verdict within 0.2 s"}
 
 
+def test_case_that_failed_gets_no_second_try(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """One failure is written before the next case begins, and stands in the verdicts of the call that goes on."""
+    ended: list[str] = []
+
+    def interrupted(command: list[str], out: Path, timeout: float) -> str:
+        if ended:
+            raise KeyboardInterrupt
+        ended.append(out.name)
+        out.mkdir(parents=True)
+        return "exit 1: out of luck"
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner, "_diagnose", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            run(drawn.cases, tmp_path, progress=False)
+    fake_reports(monkeypatch, drawn.sealed, right=True)
+    verdicts = json.loads(run(drawn.cases, tmp_path, progress=False).read_text())["reports"]
+    assert verdicts["case-001"] == {"verdict": "failed", "message": "exit 1: out of luck"}
+    assert [entry["verdict"] for entry in verdicts.values()].count("failed") == 1
+
+
 def test_drawn_case_that_was_never_run_counts_as_wrong(drawn: Drawn, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     fake_reports(monkeypatch, drawn.sealed, right=True)
     shutil.copytree(drawn.cases, tmp_path / "cases")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -66,6 +67,7 @@ def test_each_effect_is_missing_at_the_sizes_of_its_rehearsal(folders: tuple[Pat
     assert found == {(effect, size) for effect, (_, sizes) in AMOUNTS.items() for size in sizes}
     assert len(truths) == 4
     assert all(t["draw"]["is_documented_form"] for t in truths)
+    assert all(t["draw"]["target"] == t["draw"]["gap_noise"] > 0.0 for t in truths)
 
 
 def test_the_rigs_are_the_same_recorded_anew(folders: tuple[Path, Path]) -> None:
@@ -82,13 +84,38 @@ def test_the_rigs_are_the_same_recorded_anew(folders: tuple[Path, Path]) -> None
 
 def test_the_cases_do_not_tell_the_truth(folders: tuple[Path, Path]) -> None:
     refuse_truth(folders[1])
-    with pytest.raises(ValueError, match="the diagnosis could read the truths there"):
-        rehearse(DESIGNS, 1, folders[1], sealed=folders[1] / "truth", progress=False)
+    for within in (folders[1] / "truth", folders[1].parent):
+        with pytest.raises(ValueError, match="the diagnosis could read the truths there"):
+            rehearse(DESIGNS, 1, folders[1], sealed=within, progress=False)
 
 
 def test_another_call_takes_no_folder_of_other_settings(folders: tuple[Path, Path]) -> None:
-    with pytest.raises(ValueError, match="expected the same settings"):
+    with pytest.raises(ValueError, match=r"settings.json: seed = 1: expected 31090, with which this was begun"):
         rehearse(replace(DESIGNS, seed=1), 1, folders[1], sealed=folders[0], progress=False)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"system": "bowden"}, "system = 'bowden': expected one of two_inertia"),
+        ({"seed": -1}, "seed = -1: expected at least 0"),
+        ({"repeats": 1.5}, r"repeats = 1\.5: expected a share from 0 to 1"),
+        ({"num_effects": 0}, "num_effects = 0: expected at least 1"),
+        ({"rehearsed": 0}, "rehearsed = 0: expected at least 1"),
+        ({"realised": -1}, "realised = -1: expected at least 1"),
+        ({"step": 0.0}, r"step = 0\.0: expected a number above 0"),
+        ({"sizes": ()}, r"sizes = \(\): expected numbers above 0 that rise"),
+        ({"sizes": (0.0, 1.0)}, r"sizes = \(0\.0, 1\.0\): expected numbers above 0 that rise"),
+        ({"sizes": (3.0, 1.0)}, r"sizes = \(3\.0, 1\.0\): expected numbers above 0 that rise"),
+        ({"fastest": 1.0}, "fastest = 1 Hz: expected at least 100 Hz"),
+    ],
+)
+def test_designs_that_cannot_be_drawn_are_refused_before_anything_is_written(
+    wrong: dict[str, object], message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        rehearse(replace(DESIGNS, **wrong), 1, tmp_path / "out", sealed=tmp_path / "truth", progress=False)  # type: ignore[arg-type]
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_failed_rehearsal_leaves_its_design_out(
@@ -126,19 +153,26 @@ def test_predicted_and_realised_shares(folders: tuple[Path, Path]) -> None:
     assert result.effects["points"].to_dict() == pytest.approx({BRISTLE: 50.0, OFFSET: -50.0}, abs=0.1)
     assert result.repeats["realised"].to_dict() == {True: "2 of 4"}
     assert result.sizes["predicted %"].loc[0.3] < 15 < 85 < result.sizes["predicted %"].loc[3.0]
-    assert "predicted less realised, over 1 designs: " in str(result)
+    assert "predicted less realised, over 1 design: " in str(result)
     assert result.to_dict()["format"] == "tendonlab-score/1"  # a diagnosis must not read it
 
 
 def test_a_case_without_a_report_was_not_found(folders: tuple[Path, Path], tmp_path: Path) -> None:
-    from shutil import copytree
-
-    out = Path(copytree(folders[1], tmp_path / "out"))
+    out = Path(shutil.copytree(folders[1], tmp_path / "out"))
     file = out / "design-001" / "reports" / "verdicts.json"
     told = json.loads(file.read_text())
     told["reports"] = {name: {"verdict": "failed"} for name in told["reports"]}
     file.write_text(json.dumps(told))
     assert compare([(folders[0], out)]).pooled["realised"].tolist() == ["0 of 4"]
+
+
+@pytest.mark.parametrize("lost", ["design-001/case-002.toml", "design-001"])
+def test_a_missing_truth_is_named(folders: tuple[Path, Path], tmp_path: Path, lost: str) -> None:
+    """Of a case, and of a design: neither is left out in silence."""
+    sealed = Path(shutil.copytree(folders[0], tmp_path / "truth"))
+    (sealed / lost).rename(tmp_path / "lost")
+    with pytest.raises(ValueError, match=r"truth/design-001/case-00\d\.toml is missing: expected the truth of"):
+        compare([(sealed, folders[1])])
 
 
 def test_a_report_is_judged_as_the_diagnosis_it_was() -> None:

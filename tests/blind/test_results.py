@@ -80,6 +80,15 @@ def folders(tmp_path: Path) -> tuple[Path, Path]:
     return sealed, reports
 
 
+def rewrite(reports: Path, name: str, given: Any) -> None:
+    """Another report on a case, hashed as if it had been written at once."""
+    (reports / name / REPORT).write_text(json.dumps(given), encoding="utf-8")
+    content = json.loads((reports / VERDICTS).read_text(encoding="utf-8"))
+    digest = hashlib.sha256((reports / name / REPORT).read_bytes()).hexdigest()
+    content["reports"][name] = {"verdict": given["verdict"], "sha256": digest}
+    (reports / VERDICTS).write_text(json.dumps(content), encoding="utf-8")
+
+
 @pytest.fixture
 def found(folders: tuple[Path, Path]) -> Results:
     return results([folders])
@@ -93,7 +102,7 @@ def test_each_share_counts_the_cases_that_it_concerns(found: Results) -> None:
     assert counts["an effect named where none is missing"] == [(1, 2), (0, 0)]
     assert counts["unknown cause found, gap/noise ≥ 3"] == [(0, 0), (1, 2)]  # a crash is wrong
     assert counts["unknown cause found, gap/noise 1–3"] == [(0, 0), (0, 1)]
-    assert counts["unknown cause told as an effect with P > 0.8"] == [(0, 0), (2, 3)]
+    assert counts["unknown cause reported as an effect with P > 0.8"] == [(0, 0), (2, 3)]
     assert counts["verdict right"] == [(4, 6), (1, 3)]
     assert "pair: both established" not in counts  # none was drawn
 
@@ -117,6 +126,16 @@ def test_effects_that_were_reported_in_place_of_the_true_one_are_counted(
     assert again["joint:stribeck"] == (3, {"failed": 1})
 
 
+def test_an_effect_that_nobody_reported_stands_in_no_place(folders: tuple[Path, Path]) -> None:
+    """Of a report that selects nothing the verdict counts, whichever effect it ranks first; a right effect that was
+    selected stands in nobody's place."""
+    rewrite(folders[1], "weak", report("no_gap"))
+    given = report("effect", "joint:stribeck")
+    given["effects"][1]["probability"] = 0.95  # not selected
+    rewrite(folders[1], "strong", given)
+    assert results([folders]).confused_effects() == {"load:offset": (1, {"no_gap": 1})}
+
+
 def test_another_map_changes_the_probabilities_and_the_page_says_so(folders: tuple[Path, Path], tmp_path: Path) -> None:
     content = shipped_content()
     even = {"temperature": 1.0, "lapse": 0.5}
@@ -133,6 +152,25 @@ def test_another_map_changes_the_probabilities_and_the_page_says_so(folders: tup
     rows = [next(line for line in page.splitlines() if line.startswith("| all, without")) for page in pages]
     stated = [float(row.split("|")[3].split(";")[1]) for row in rows]
     assert stated[1] < stated[0] - 0.1
+
+
+def test_a_map_that_was_confirmed_elsewhere_is_still_the_shipped_one(
+    folders: tuple[Path, Path], tmp_path: Path
+) -> None:
+    content = shipped_content()
+    content["with repeats"] = content["with repeats"] | {"confirmed": [], "least runs": 99}
+    (tmp_path / "calibration.json").write_text(json.dumps(content | {"tendonlab": "x"}), encoding="utf-8")
+    assert results([folders], map_file=tmp_path / "calibration.json").map_is_shipped
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [('{"format": "a/1"}', "format = 'a/1': expected"), ("[]", "format = None"), ("a", "Expecting")],
+)
+def test_a_file_that_is_no_map_is_named(folders: tuple[Path, Path], tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "own.json").write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=rf"/own\.json: {message}"):
+        results([folders], map_file=tmp_path / "own.json")
 
 
 def test_misses_are_those_whose_strictest_check_fails(found: Results) -> None:
@@ -174,11 +212,17 @@ def test_the_gap_shrank_as_far_as_where_the_effects_were_told(folders: tuple[Pat
 def test_the_command_takes_several_series(
     folders: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    own = tmp_path / "my map.json"
+    own.write_text(json.dumps(shipped_content()), encoding="utf-8")
     pair = ["--on", *map(str, folders)]
-    monkeypatch.setattr("sys.argv", ["blind", "results", *pair, *pair, "--out", str(tmp_path / "out")])
+    monkeypatch.setattr(
+        "sys.argv", ["blind", "results", *pair, *pair, "--map", str(own), "--out", str(tmp_path / "out")]
+    )
     assert main() == 0
     assert capsys.readouterr().out.strip() == str(tmp_path / "out" / PAGE)
-    assert "18 rigs" in (tmp_path / "out" / PAGE).read_text(encoding="utf-8")
+    text = (tmp_path / "out" / PAGE).read_text(encoding="utf-8")
+    assert "18 rigs" in text
+    assert f"--map '{own}' --out {tmp_path / 'out'}\n" in text  # as a shell reads it
 
 
 def test_no_series_is_an_error() -> None:

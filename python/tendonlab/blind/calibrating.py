@@ -35,8 +35,8 @@ Folders = Sequence[tuple[Path, Path]]  # truths and reports
 
 @dataclass(frozen=True)
 class Judged:
-    """A diagnosed case: the true verdict, effects that count as right, the evidence of the report, the verdict that was
-    told, and the number of training runs."""
+    """A diagnosed case: the true verdict, effects that count as right, the evidence of the report, the verdict that it
+    states, and the number of training runs."""
 
     system: str
     repeats: bool
@@ -149,12 +149,12 @@ def _truth_of(stated: Iterable[tuple[float, bool]]) -> dict[str, float]:
 
 
 def results_on(cases: Sequence[Judged], of: Calibration) -> dict[str, dict[str, float]]:
-    """How true the probabilities of the verdicts that were told, and of all effects, are on these cases."""
+    """How true the probabilities of the reported verdicts, and of all effects, are on these cases."""
     return {"verdicts": _truth_of(stated_verdicts(cases, of)), "effects": _truth_of(stated_effects(cases, of))}
 
 
 def stated_verdicts(cases: Sequence[Judged], of: Calibration) -> list[tuple[float, bool]]:
-    """The probability of each verdict that was told, and whether that is the true one."""
+    """The probability of each reported verdict, and whether that is the true one."""
     return [(of.of_verdicts(case.verdicts)[case.told], case.told == case.verdict) for case in cases]
 
 
@@ -174,14 +174,18 @@ def calibrate(on: Folders = (), test: Folders = ()) -> dict[str, Any]:
     """The content of calibration.json: the series of cases by the names of their sealed folders; with and without
     repeats the map, from how many cases of which rigs, what test cases say of the map, and the kinds of rigs on which
     these confirm the map. Where no case is given to fit `on`, the shipped map stays and is tested. Raises ValueError as
-    `judged` does, and where cases were drawn to test and are to be fitted, or the other way round."""
+    `judged` does, where cases were drawn to test and are to be fitted, or the other way round, and where no case that
+    is given to fit has evidence."""
     origins = [*_origins(on, but="test"), *_origins(test, but="calibration")]
     cases, tests = judged(on), judged(test)
+    if on and not cases:
+        raise ValueError(f"{', '.join(str(reports) for _, reports in on)}: expected reports with evidence, found none")
     series = _names(on) or shipped_content()["series"]["fitted on"]
     content: dict[str, Any] = {"format": FORMAT, "tendonlab": version()}
     content["series"] = {"fitted on": series, "tested on": _names(test)}
     if origins:
         content["series"]["protocols"] = sorted({f"{origin['version']} {origin['sha256']}" for origin in origins})
+        content["series"]["changed"] = sorted({name for origin in origins for name in origin["changed"]})
     for name, repeats in (("with repeats", True), ("without repeats", False)):
         mine, others = ([case for case in given if case.repeats == repeats] for given in (cases, tests))
         numbers = {kind: len(of) for kind, of in by_system(mine).items()} or shipped_content()[name]["fitted on"]

@@ -17,8 +17,10 @@ from .calibrating import calibrate, write_map
 from .drawing import draw
 from .oracle import tell
 from .protocol import STANDARD, read
+from .reach import refuse_within_reach
 from .results import results
 from .results_page import write
+from .resuming import plain_settings, refuse_other
 from .runner import run
 from .write import write_at_once
 
@@ -87,25 +89,23 @@ def campaign(
     `seeds` and `counts`: of the series to fit on and of the one to test. `changed`: options of the protocol that are
     others here. `tells`: whether `tell` diagnoses the test series once more. `command`: what the page says made it.
     Truths, and a journal of what is done, go into the folder `sealed`. A campaign that was interrupted goes on where it
-    stopped. Raises ValueError where a seed serves another purpose, where `sealed` lies in `out`, and where a campaign
-    of other settings was begun there.
+    stopped. Raises ValueError where a seed serves another purpose, where `sealed` and `out` lie in each other, where a
+    campaign of other settings was begun there, and where the truths of series in `out` lie elsewhere.
     """
     out, sealed = Path(out).resolve(), Path(sealed).resolve()
-    if out == sealed or out in sealed.parents:
-        raise ValueError(
-            f"{sealed}: the truths lie where the diagnosis could read them; expected a folder outside {out}"
-        )
+    refuse_within_reach(sealed, out)
     by = read(protocol)
     of_purpose = dict(zip(("calibration", "test"), zip(seeds, counts, strict=True), strict=True))
     drawn = {purpose: by.drawn(seed, purpose=purpose, changed=changed) for purpose, (seed, _) in of_purpose.items()}
     settings = {
         "tendonlab": version(),
         "protocol": {name: drawn["test"]["origin"][name] for name in ("version", "sha256")},
-        "changed": json.loads(json.dumps(dict(changed or {}))),
-        "seeds": list(seeds),
-        "counts": list(counts),
+        "changed": by.others(changed or {}),
+        "seeds": seeds,
+        "counts": counts,
+        "timeout": timeout,
     }
-    journal = Journal.open(sealed / JOURNAL, settings)
+    journal = Journal.open(sealed / JOURNAL, plain_settings(settings), out)
     fit, test = (Series(purpose, seed, count, out, sealed) for purpose, (seed, count) in of_purpose.items())
     pace: dict[str, Any] = {"jobs": jobs, "progress": progress}
     work: dict[str, Callable[[], object]] = {}
@@ -148,17 +148,16 @@ class Journal:
     seconds: dict[str, float] = field(default_factory=dict)
 
     @classmethod
-    def open(cls, path: Path, settings: dict[str, Any]) -> Journal:
+    def open(cls, path: Path, settings: dict[str, Any], out: Path) -> Journal:
         """The journal of the campaign that was begun here, or a new one. Raises ValueError where the settings of that
-        campaign are others."""
+        campaign are others, and for a new one where `out` holds series: their truths lie elsewhere."""
         if not path.exists():
+            for series in sorted(out.glob("seed-*")):
+                raise ValueError(f"{path} is missing: expected it beside the truths of {series}, or another OUT")
             path.parent.mkdir(parents=True, exist_ok=True)
             return cls(path, settings)
         kept = json.loads(path.read_text(encoding="utf-8"))
-        for name, value in settings.items():
-            if kept["settings"].get(name) != value:
-                begun = kept["settings"].get(name)
-                raise ValueError(f"{path}: {name} = {value}: expected {begun}, with which this campaign was begun")
+        refuse_other(path, kept["settings"], settings)
         return cls(path, settings, kept["done"], kept["seconds"])
 
     def through(self, work: Mapping[str, Callable[[], object]]) -> Iterator[Stage]:

@@ -87,7 +87,7 @@ def _add_drawn(drawing: argparse.ArgumentParser) -> None:
     drawing.add_argument("--count", type=int, default=40, help="number of cases (default 40)")
     text = "draw by a protocol, `standard` or a file; the options below change it"
     drawing.add_argument("--protocol", metavar="NAME", help=text)
-    text = "what the series is for: development, calibration or test; the protocol refuses seeds that serve another one"
+    text = "development, calibration or test (default: what the seed serves); seeds that serve another one are refused"
     drawing.add_argument("--purpose", default="", help=text)
     _add_shares(drawing)
 
@@ -131,11 +131,13 @@ def _results(given: argparse.Namespace) -> int:
     from .results import results
     from .results_page import write
 
-    pairs = [f"--{name} {sealed} {of}" for name in ("on", "told") for sealed, of in getattr(given, name)]
-    pairs += [f"--map {given.map_file}"] if given.map_file else []
-    command = f"tendonlab blind results {' '.join(pairs)} --out {given.out}"
-    print(write(results(given.on, given.told, map_file=given.map_file), given.out, command))
+    print(write(results(given.on, given.told, map_file=given.map_file), given.out, _as_called("results")))
     return 0
+
+
+def _as_called(verb: str) -> str:
+    """The command of this process, from the verb on."""
+    return f"tendonlab blind {shlex.join(sys.argv[sys.argv.index(verb) :])}"
 
 
 def _add_calibrate(verbs: Any) -> None:
@@ -164,7 +166,7 @@ def _add_campaign(verbs: Any) -> None:
     text = "seeds of the series to fit the map on and of the one to test it"
     parser.add_argument("--seeds", type=int, nargs=2, required=True, metavar=ends, help=text)
     text = "number of cases of both series (default 600 300)"
-    parser.add_argument("--counts", type=int, nargs=2, default=(600, 300), metavar=ends, help=text)
+    parser.add_argument("--counts", type=int, nargs=2, metavar=ends, help=text)
     text = "the protocol: `standard` (default) or a file; the options below change it"
     parser.add_argument("--protocol", default="standard", metavar="NAME", help=text)
     text = "diagnose the test series once more, told which effects are missing"
@@ -174,16 +176,16 @@ def _add_campaign(verbs: Any) -> None:
 
 
 def _campaign(given: argparse.Namespace) -> int:
-    from .campaign import campaign
+    from .campaign import COUNTS, campaign
 
     asked: dict[str, Any] = {name: getattr(given, name) for name in ("sealed", "protocol", "jobs", "timeout")}
     asked |= {
         "seeds": tuple(given.seeds),
-        "counts": tuple(given.counts),
+        "counts": tuple(given.counts or COUNTS),
         "tells": given.tell,
         "changed": _shares(given),
     }
-    command = f"tendonlab blind {shlex.join(sys.argv[sys.argv.index('campaign') :])}"
+    command = _as_called("campaign")
     total = 0.0
     for stage in campaign(given.out, command=command, **asked):
         total += stage.seconds

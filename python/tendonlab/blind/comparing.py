@@ -15,10 +15,11 @@ from tendonlab.rehearsal.curve import clopper_pearson, fit_curve
 from tendonlab.rehearsal.judge import judged
 from tendonlab.rehearsal.tally import HITS
 from tendonlab.report.diagnosis import Diagnosis, EffectFinding, plain
+from tendonlab.report.numbers import counted
 
 from .rehearsing import FOUND, REHEARSAL, REPORTS
 from .runner import VERDICTS
-from .scoring import report_of, truth_of
+from .scoring import cases_of, report_of, truth_of
 
 FAILED = "failed"
 Folders = Sequence[tuple[Path, Path]]  # truths, and what `rehearse` wrote
@@ -43,7 +44,7 @@ class Comparison:
         tables = {f"by {name[:-1]}": getattr(self, name) for name in ("designs", "effects", "sizes")}
         tables |= {"by whether an experiment repeats": self.repeats, "pooled": self.pooled}
         blocks = [f"{title}\n{table.to_string(float_format='%.1f')}" for title, table in tables.items()]
-        over = f"predicted less realised, over {len(self.designs)} designs: {self.mean:+.1f} points"
+        over = f"predicted less realised, over {counted(len(self.designs), 'design')}: {self.mean:+.1f} points"
         error = "" if np.isnan(self.error) else f" (standard error {self.error:.1f})"
         return "\n\n".join([*blocks, over + error])
 
@@ -85,16 +86,16 @@ def _design(truths: Path, folder: Path) -> list[dict[str, Any]]:
     """One row per realised rig of a design."""
     rehearsal = json.loads((folder / REHEARSAL / FOUND).read_text(encoding="utf-8"))
     entries = {entry["effect"]: entry for entry in rehearsal["effects"]}
-    told = json.loads((folder / REPORTS / VERDICTS).read_text(encoding="utf-8"))["reports"]
+    reported = json.loads((folder / REPORTS / VERDICTS).read_text(encoding="utf-8"))["reports"]
     rows = []
-    for path in sorted(truths.glob("*.toml")):
-        truth = truth_of(truths, path.stem)
+    for case in cases_of(truths, reported):
+        truth = truth_of(truths, case)
         (effect,) = truth["effects"]
-        report = report_of(folder / REPORTS, path.stem, told.get(path.stem, {"verdict": FAILED}))
+        report = report_of(folder / REPORTS, case, reported.get(case, {"verdict": FAILED}))
         answer = FAILED if report["verdict"] == FAILED else judged(answer_of(report), effect)["outcome"]
         draw = {name: truth["draw"][name] for name in ("system", "sample_time", "repeats", "gap_noise")}
         foretold = _foretold(entries[effect], abs(truth["truth"][entries[effect]["parameter"]]))
-        rows.append({"case": path.stem, "effect": effect, **draw, **foretold, "outcome": answer})
+        rows.append({"case": case, "effect": effect, **draw, **foretold, "outcome": answer})
     return [{**row, "found": row["outcome"] in HITS} for row in rows]
 
 

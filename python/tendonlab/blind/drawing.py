@@ -63,13 +63,12 @@ def draw(
     `origin`: what the truths say of the protocol, see `Protocol.origin`. Where it `resumes`, cases that were drawn
     before stay, and the others are drawn.
     The same seed gives the same cases whatever `jobs`. Raises ValueError for what `plan` cannot draw,
-    FileExistsError if one of the two folders exists and drawing does not resume.
+    FileExistsError if one of the two folders exists and drawing does not resume, or has nothing but this one to resume.
     """
     cases, sealed = Path(out) / "cases", Path(out) / "sealed" if sealed is None else Path(sealed)
     planned = plan(seed, count, **options)
-    if not (resumes and cases.exists()):
+    if not (resumes and cases.exists() and sealed.exists()):
         make_folders(cases, sealed)
-    sealed.mkdir(parents=True, exist_ok=True)
     batches = [batch for batch in _batches(planned) if _missing(batch, sealed)]
     work = partial(
         _draw_batch, seed=seed, cases=cases, sealed=sealed, origin=origin, num_samples=num_samples, step=step

@@ -54,7 +54,7 @@ class Options:
     met_within: float = MET_WITHIN
 
     def __post_init__(self) -> None:
-        """Raise ValueError if a share is none, if strengths are no range, and for another system."""
+        """Raise ValueError if a share is not from 0 to 1, if strengths are no range, and for another system."""
         for name in SHARES:
             share = getattr(self, name)
             if share is not None and not 0.0 <= share <= 1.0:

@@ -36,6 +36,13 @@ def refuse_truth(*folders: Path) -> None:
                 )
 
 
+def refuse_within_reach(sealed: Path, out: Path) -> None:
+    """Raise ValueError where the folder of the truths and that of the cases and reports are one, or one lies in the
+    other."""
+    if sealed == out or out in sealed.parents or sealed in out.parents:
+        raise ValueError(f"{sealed}: the diagnosis could read the truths there; expected a folder apart from {out}")
+
+
 def _below(folder: Path) -> Iterator[Path]:
     """Every file and folder below `folder`; a folder that links lead to twice is opened once."""
     waiting, opened = [folder], set()

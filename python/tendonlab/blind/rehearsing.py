@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,14 @@ from tendonlab.data import Dataset, load
 from tendonlab.rehearsal.sizes import size_parameter, withheld_effects
 
 from .drawing import description, name_of
+from .reach import refuse_within_reach
+from .resuming import plain_settings, refuse_other
 from .rig import Rig, draw_rig, effect_parameters, largest_amplitude
 from .runner import VERDICTS, run
 from .strength import measured, tune
 from .systems import SYSTEMS
 from .systems.effects import draw_shape
-from .write import record, sealed_toml, stated, write_dataset
+from .write import record, sealed_toml, stated, write_at_once, write_dataset
 
 RIG, REHEARSAL, CASES, REPORTS, SETTINGS = "rig", "rehearsal", "cases", "reports", "settings.json"
 FOUND = "rehearsal.json"  # in the folder of a rehearsal
@@ -51,6 +54,27 @@ class Designs:
     realised: int = 1
     num_samples: int | None = None
     step: float | None = None
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for another system, if a share is not from 0 to 1, and for counts, sizes, rates and steps
+        that are none."""
+        if self.system not in SYSTEMS:
+            raise ValueError(f"system = {self.system!r}: expected one of {', '.join(SYSTEMS)}")
+        if self.seed < 0:
+            raise ValueError(f"seed = {self.seed}: expected at least 0")
+        if not 0.0 <= self.repeats <= 1.0:
+            raise ValueError(f"repeats = {self.repeats}: expected a share from 0 to 1")
+        for name in ("num_effects", "rehearsed", "realised", "num_samples"):
+            count = getattr(self, name)
+            if count is not None and count < 1:
+                raise ValueError(f"{name} = {count}: expected at least 1")
+        for name in ("fastest", "step"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 < value < np.inf:
+                raise ValueError(f"{name} = {value}: expected a number above 0")
+        ends = (0.0, *self.sizes, np.inf)
+        if not self.sizes or not all(one < other for one, other in pairwise(ends)):
+            raise ValueError(f"sizes = {self.sizes}: expected numbers above 0 that rise")
 
     def draw(self, index: int) -> Rig:
         """The rig of a design, which lacks nothing."""
@@ -87,13 +111,13 @@ def rehearse(
     larger `count` adds designs.
 
     `minutes`: time of a rehearsal at most; `timeout`: of one diagnosis, s. A design whose rehearsal fails is left out.
-    Raises ValueError where `sealed` lies below `out`, where `out` belongs to other settings, or for settings that
-    cannot be drawn."""
+    Raises ValueError where `sealed` and `out` lie in each other, where `out` belongs to other settings, or for settings
+    that cannot be drawn."""
     out, sealed = Path(out).resolve(), Path(sealed).resolve()
-    if sealed == out or out in sealed.parents:
-        raise ValueError(f"{sealed}: the diagnosis could read the truths there; expected a folder outside {out}")
-    if designs.system not in SYSTEMS:
-        raise ValueError(f"system = {designs.system!r}: expected one of {', '.join(SYSTEMS)}")
+    refuse_within_reach(sealed, out)
+    if count < 1:
+        raise ValueError(f"count = {count}: expected at least 1")
+    designs.draw(0)
     _keep(designs, out)
     for index in tqdm(range(count), desc="rehearse", unit="design", disable=not progress):
         name = f"design-{index + 1:03d}"
@@ -108,12 +132,12 @@ def rehearse(
 
 def _keep(designs: Designs, out: Path) -> None:
     """Write the settings, or raise ValueError where `out` has others."""
-    text = json.dumps(asdict(designs), indent=1) + "\n"
+    settings, path = plain_settings(asdict(designs)), out / SETTINGS
     out.mkdir(parents=True, exist_ok=True)
-    if not (out / SETTINGS).exists():
-        (out / SETTINGS).write_text(text, encoding="utf-8")
-    elif (out / SETTINGS).read_text(encoding="utf-8") != text:
-        raise ValueError(f"{out / SETTINGS}: expected the same settings, or a new folder")
+    if path.exists():
+        refuse_other(path, json.loads(path.read_text(encoding="utf-8")), settings)
+    else:
+        write_at_once(path, json.dumps(settings, indent=1) + "\n")
 
 
 def _recorded(designs: Designs, index: int, folder: Path, truths: Path, *, minutes: float) -> str:
@@ -186,7 +210,8 @@ def _realise(designs: Designs, index: int, rig: Rig, folder: Path, truths: Path)
     for k, (lacking, strength, log) in enumerate(zip(rigs, strengths, logs, strict=True)):
         name = name_of(k)
         write_dataset(lacking, log, part / name, name=name, description=description(rig))
-        (truths / f"{name}.toml").write_text(sealed_toml(lacking, strength), encoding="utf-8")
+        reached = replace(lacking, target=strength.gap_noise)  # the size was asked for, no gap over noise
+        (truths / f"{name}.toml").write_text(sealed_toml(reached, strength), encoding="utf-8")
     part.rename(folder / CASES)
     return ""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from tendonlab.diagnosis.answer.calibration import Calibration, calibration_of, shipped_content
+from tendonlab.diagnosis.answer.calibration import Calibration, calibration_of, read_content, shipped, shipped_content
 from tendonlab.rehearsal.tally import Share, share
 
 from .calibrating import Folders, Judged, judged
@@ -61,7 +60,7 @@ ROWS = (
     Row("unknown cause found, gap/noise ≥ 3", "unknown_hit", _unknown(STRONG)),
     Row("unknown cause found, gap/noise 1–3", "unknown_hit", _unknown(WEAK, STRONG)),
     Row("unknown cause found, all strengths", "unknown_hit", _unknown(0.0)),
-    Row(f"unknown cause told as an effect with P > {SURE}", "unknown_named", _unknown(0.0)),
+    Row(f"unknown cause reported as an effect with P > {SURE}", "unknown_named", _unknown(0.0)),
     Row("pair: both established", "pair_both", _everywhere),
     Row("pair: at least one established", "pair_one", _everywhere),
     Row("mistake in the logs: right kind", "fault_kind", _everywhere),
@@ -88,8 +87,9 @@ class Results:
 
     @property
     def map_is_shipped(self) -> bool:
-        """Whether it is the map that comes with this version."""
-        return self.content == shipped_content()
+        """Whether it is the map that comes with this version, whatever confirmed it."""
+        maps = [(self.map_of(repeats=repeats), shipped(repeats=repeats)) for repeats in (False, True)]
+        return all((own.verdicts, own.effects) == (of.verdicts, of.effects) for own, of in maps)
 
     @property
     def parts(self) -> dict[str, pd.DataFrame]:
@@ -123,18 +123,20 @@ class Results:
         return {quantity: both for quantity, both in of_all.items() if any(of.num for of in both)}
 
     def confusion(self) -> pd.DataFrame:
-        """True verdicts in rows, told ones in columns: counts."""
+        """True verdicts in rows, reported ones in columns: counts."""
         return pd.crosstab(self.cases["truth"], self.cases["verdict"])
 
     def confused_effects(self) -> dict[str, tuple[int, dict[str, int]]]:
-        """Of each single effect that was not reported first everywhere: on how many rigs it was missing, and how often
-        something else was reported first, most frequent first. Where no effect was reported, the verdict counts."""
+        """Of each single effect that was not the most probable one everywhere: on how many rigs it was missing, and how
+        often something else was reported, most frequent first: the first effect that was selected, or the verdict where
+        none was."""
         found: dict[str, tuple[int, dict[str, int]]] = {}
         for effect, cases in self.single().groupby("effect"):
-            wrong = cases[cases["ranked_first"] < 1.0]
-            told = wrong["first"].where(wrong["first"] != "", wrong["verdict"])
-            if len(told):
-                found[str(effect)] = (len(cases), {str(name): int(n) for name, n in told.value_counts().items()})
+            wrong = cases[(cases["ranked_first"] < 1.0) & (cases["established"] < 1.0)]
+            first = wrong["selected"].str.split(",").str[0]
+            reported = first.where(first != "", wrong["verdict"])[first != effect]
+            if len(reported):
+                found[str(effect)] = (len(cases), {str(name): int(n) for name, n in reported.value_counts().items()})
         return found
 
     def single(self) -> pd.DataFrame:
@@ -157,15 +159,15 @@ def _count(cases: pd.DataFrame, row: Row) -> Share:
 
 def results(folders: Folders, told: Folders = (), *, map_file: Path | None = None) -> Results:
     """The results of several series, each a folder of truths and one of reports; `told`: of some of them the truths
-    and what `tell` wrote; `map_file`: another calibration.json than the shipped one. Raises ValueError as `score` and
-    `judged` do, where no series is given, and where one was told that is not given."""
+    and what `tell` wrote; `map_file`: another calibration.json than the shipped one. Raises ValueError as `score`,
+    `judged` and `read_content` do, where no series is given, and where one was told that is not given."""
     if not folders:
         raise ValueError("no series: expected at least one folder of truths with its folder of reports")
     oracles = {sealed.resolve(): reports for sealed, reports in told}
     if unknown := oracles.keys() - {sealed.resolve() for sealed, _ in folders}:
         raise ValueError(f"{min(unknown)}: expected the truths of one of the series, too")
     series = [_scored(sealed, reports, oracles.get(sealed.resolve())) for sealed, reports in folders]
-    content = json.loads(map_file.read_text(encoding="utf-8")) if map_file else shipped_content()
+    content = read_content(map_file) if map_file else shipped_content()
     return Results(cases=pd.concat(series), judged=tuple(judged(folders)), content=content)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from tendonlab.rehearsal.tally import Share
+from tendonlab.report.numbers import counted
 from tendonlab.version import version
 
 from .calibrating import by_system, results_on, spreads_on
@@ -35,9 +36,9 @@ def write(found: Results, folder: Path, command: str) -> Path:
 
 def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[str]:
     parts = found.parts
-    columns = [f"{name} ({len(cases)} rigs)" for name, cases in parts.items()]
+    columns = [f"{name} ({counted(len(cases), 'rig')})" for name, cases in parts.items()]
     yield "# Blind results"
-    yield f"{len(found.cases)} rigs. Written by tendonlab {version()} with"
+    yield f"{counted(len(found.cases), 'rig')}. Written by tendonlab {version()} with"
     yield f"    {command}"
     intervals = "Shares with their number of cases and 95 % intervals (Clopper–Pearson)."
     yield f"{intervals} [The protocol](blind.md) says what is drawn and what counts."
@@ -51,19 +52,19 @@ def _sections(found: Results, images: dict[str, str], command: str) -> Iterable[
     rows = [[name, *map(_share, both)] for name, both in found.by_system().items()]
     yield _table(["verdict right", *columns], rows)
     confusion = found.confusion()
-    yield _table(["truth (rows), told (columns)", *confusion.columns], [[n, *r] for n, r in confusion.iterrows()])
+    yield _table(["truth (rows), reported (columns)", *confusion.columns], [[n, *r] for n, r in confusion.iterrows()])
     if len(found.single()):
         yield "## Strength of the missing effect"
         yield images["blind-strength"]
     confused = found.confused_effects()
     if confused:
         yield "## Effects reported in place of the true one"
-        yield "Single effects: the most probable effect where that is wrong; the verdict where no effect is reported."
+        yield "Where the most probable effect is a wrong one: the first that was selected; the verdict where none was."
         yield _table(["missing effect", "reported first instead"], [_confused(n, *of) for n, of in confused.items()])
     yield from _probabilities(found, images)
     yield "## Wrong answers"
     yield "A right effect in another form than the library's, found under `unknown_effect`, counts as right here."
-    columns = ["case", "system", "repeats", "missing", "gap/noise", "verdict told", "selected"]
+    columns = ["case", "system", "repeats", "missing", "gap/noise", "verdict reported", "selected"]
     yield _table(columns, [_miss(str(name), case) for name, case in found.misses().iterrows()])
 
 
@@ -87,29 +88,29 @@ def _calibration(found: Results) -> Iterable[list[object]]:
         mine = [case for case in found.judged if case.repeats == repeats]
         for name, group in {"all": mine, **by_system(mine)}.items():
             if len(group) >= LEAST_CASES:
-                told, spread = results_on(group, of), spreads_on(group, of)
+                stated, spread = results_on(group, of), spreads_on(group, of)
                 title = f"{name}, {'with' if repeats else 'without'} repeats"
-                yield [title, len(group), *(_true(told[kind], spread[kind]) for kind in ("verdicts", "effects"))]
+                yield [title, len(group), *(_true(stated[kind], spread[kind]) for kind in ("verdicts", "effects"))]
 
 
-def _true(told: dict[str, float], spread: float) -> str:
-    error = told["calibration error beyond chance"]
-    cells = [f"{told[name]:.2f}" for name in ("came true", "mean probability")]
+def _true(stated: dict[str, float], spread: float) -> str:
+    error = stated["calibration error beyond chance"]
+    cells = [f"{stated[name]:.2f}" for name in ("came true", "mean probability")]
     cells += [f"{error:.3f} ({error - NORMAL * spread:.3f} to {error + NORMAL * spread:.3f})"]
-    cells += [f"{told['z']:.1f}", f"{told['reliability slope']:.2f}"]
+    cells += [f"{stated['z']:.1f}", f"{stated['reliability slope']:.2f}"]
     return "; ".join(cells).replace("-", "−")
 
 
-def _confused(effect: str, num: int, told: dict[str, int]) -> list[object]:
-    wrong = ", ".join(f"{name} {count}" for name, count in told.items())
-    return [effect, f"{sum(told.values())} of {num}: {wrong}"]
+def _confused(effect: str, num: int, reported: dict[str, int]) -> list[object]:
+    wrong = ", ".join(f"{name} {count}" for name, count in reported.items())
+    return [effect, f"{sum(reported.values())} of {num}: {wrong}"]
 
 
 def _mean(of: Mean) -> str:
     if not of.num:
         return "–"
     interval = f"{of.ci95[0]:.2f}–{of.ci95[1]:.2f}; " if of.ci95 else ""
-    return f"{of.mean:.2f} ({interval}of {of.num} rigs)"
+    return f"{of.mean:.2f} ({interval}of {counted(of.num, 'rig')})"
 
 
 def _miss(name: str, case: pd.Series) -> list[object]:
@@ -117,8 +118,8 @@ def _miss(name: str, case: pd.Series) -> list[object]:
     missing = case["effect"] or cause or case["truth"].replace("_", " ")
     gap = f"{case['gap_noise']:.2g}" if pd.notna(case["gap_noise"]) else "–"
     with_repeats = "yes" if case["repeats"] else "no"
-    told = [case["verdict"], case["selected"].replace(",", ", ") or "–"]
-    return [name, case["system"], with_repeats, str(missing).replace(",", ", "), gap, *told]
+    reported = [case["verdict"], case["selected"].replace(",", ", ") or "–"]
+    return [name, case["system"], with_repeats, str(missing).replace(",", ", "), gap, *reported]
 
 
 def _share(of: Share) -> str:

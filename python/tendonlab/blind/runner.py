@@ -15,8 +15,10 @@ from pathlib import Path
 from tqdm import tqdm
 
 from .reach import refuse_truth
+from .write import write_at_once
 
 REPORT = "report.json"
+FAILURE = "failed.txt"  # why a case has no report
 VERDICTS = "verdicts.json"
 
 
@@ -26,10 +28,10 @@ def command(case: Path, out: Path) -> list[str]:
 
 
 def run(cases: Path | str, out: Path | str, *, jobs: int = 1, timeout: float = 1800.0, progress: bool = True) -> Path:
-    """Diagnose all cases into `out`/<id>, skipping those that have a report, and return `out`/verdicts.json.
+    """Diagnose all cases into `out`/<id>, skipping those that have a report or failed, and return `out`/verdicts.json.
 
     A case that fails is recorded there as "failed" with the last line it wrote; so is one that takes longer than
-    `timeout`, s. Raises ValueError where `cases` holds
+    `timeout`, s. It gets no second try unless its failed.txt is removed. Raises ValueError where `cases` holds
     no dataset, or where a truth lies below `cases`, next to `cases` or below `out`, see `refuse_truth`.
     """
     cases, out = Path(cases).resolve(), Path(out).resolve()
@@ -51,17 +53,19 @@ def cases_in(cases: Path) -> list[Path]:
 def run_all(
     commands: Mapping[str, Sequence[str]], out: Path, *, jobs: int, timeout: float, progress: bool
 ) -> dict[str, str]:
-    """Run the command of each case that has no report yet in `out`; of those that failed, why."""
+    """Run the command of each case that has no report yet in `out` and did not fail; of those that failed, why."""
     out.mkdir(parents=True, exist_ok=True)
-    failed: dict[str, str] = {}
-    todo = [name for name in commands if not (out / name / REPORT).exists()]
+    failures = {name: out / name / FAILURE for name in commands}
+    failed = {name: path.read_text(encoding="utf-8").strip() for name, path in failures.items() if path.exists()}
+    todo = [name for name in commands if name not in failed and not (out / name / REPORT).exists()]
     with ThreadPoolExecutor(max(1, jobs)) as pool:
         pending = {pool.submit(_diagnose, commands[name], out / name, timeout): name for name in todo}
         done = tqdm(as_completed(pending), total=len(todo), desc="diagnose", unit="case", disable=not progress)
         for future in done:
-            message = future.result()
-            if message:
-                failed[pending[future]] = message
+            name, message = pending[future], future.result()
+            if message:  # not written by the thread: an interrupt ends the diagnosis, too, which is no failure
+                failed[name] = message
+                write_at_once(failures[name], f"{message}\n")
     return failed
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -78,13 +78,17 @@ def score(sealed: Path | str, reports: Path | str) -> Score:
         raise ValueError(f"{reports / VERDICTS} is missing: expected the folder that `blind run` wrote")
     told = json.loads((reports / VERDICTS).read_text(encoding="utf-8"))["reports"]
     rows = []
-    drawn = {path.stem for path in sealed.glob("*.toml")}
-    for name in sorted({*told, *drawn}):
+    for name in cases_of(sealed, told):
         truth, verdict = truth_of(sealed, name), told.get(name, {"verdict": "failed"})
         rows.append({"case": name, **_facts(truth), **_compare(truth, report_of(reports, name, verdict))})
     if not rows:
         raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
     return _tables(pd.DataFrame(rows).set_index("case"))
+
+
+def cases_of(sealed: Path, reported: Iterable[str]) -> list[str]:
+    """The cases that have a truth, a report or both."""
+    return sorted({*reported, *(path.stem for path in sealed.glob("*.toml"))})
 
 
 def truth_of(sealed: Path, name: str) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from tendonlab.diagnosis.answer.verdict import Verdict
@@ -81,6 +82,18 @@ class Calibration:
 def shipped_content() -> dict[str, Any]:
     """All that calibration.json of this version says."""
     return dict(json.loads((files("tendonlab.diagnosis.answer") / FILE).read_text(encoding="utf-8")))
+
+
+def read_content(path: Path) -> dict[str, Any]:
+    """All that another calibration.json says. Raises ValueError where the file is none."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}; expected a {FILE}") from error
+    found = content.get("format") if isinstance(content, dict) else None
+    if found != FORMAT:
+        raise ValueError(f"{path}: format = {found!r}: expected {FORMAT!r}")
+    return dict(content)
 
 
 def calibration_of(content: Mapping[str, Any], *, repeats: bool) -> Calibration:
