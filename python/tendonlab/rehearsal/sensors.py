@@ -72,8 +72,9 @@ def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
             sensors.append(Sensor(signal.name, own, tuple(floor.ar[c]), resolution))
         else:
             sensors.append(Sensor(signal.name, _white(signal, case, c), (), resolution))
-    is_repeated = floor is not None and floor.repeated
-    return Noise(tuple(sensors), floor.tau if floor is not None and floor.repeated else RUN_TO_RUN, is_repeated)
+    if floor is None:
+        return Noise(tuple(sensors), RUN_TO_RUN, repeated=False)
+    return Noise(tuple(sensors), floor.tau, floor.repeated)
 
 
 def stated_noise(rig: Dataset) -> Noise:

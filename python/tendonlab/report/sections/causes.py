@@ -32,8 +32,8 @@ def _less_likely(diagnosis: Diagnosis, hidden: int) -> str:
     if not hidden:
         return ""
     unfitted = sum(not effect.parameters for effect in diagnosis.effects)
-    screened = f" {unfitted} of all candidates were screened only: they promised too little to be fitted."
-    return f"{hidden} more of low probability in report.json." + (screened if unfitted else "")
+    without = f" {unfitted} of all candidates have no fit: the screen promised too little, or the warnings say why."
+    return f"{hidden} more of low probability in report.json." + (without if unfitted else "")
 
 
 def listed(diagnosis: Diagnosis) -> list[EffectFinding]:
