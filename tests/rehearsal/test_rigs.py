@@ -130,6 +130,7 @@ def test_with_repeats_the_noise_is_what_they_do_not_repeat(pendulum: Path) -> No
     rig = tl.load(pendulum)
     noise = simulated_rig(rig).noise
     assert (noise.repeated, noise.scatter) == (False, 0.008)
+    assert noise.words == "what the best model leaves of the logs"
     random, first = np.random.default_rng(4), rig.experiments[0]
     system = rig.system()
     repeats = []
@@ -140,6 +141,7 @@ def test_with_repeats_the_noise_is_what_they_do_not_repeat(pendulum: Path) -> No
         repeats.append(replace(first, name=f"repeat-{k}", repeat="A", data=data))
     noise = simulated_rig(replace(rig, experiments=tuple(repeats))).noise
     assert noise.repeated
+    assert noise.words == "what the repeats of the rig do not repeat"
     assert 0.02 < noise.scatter < 0.2  # four runs tell an sd to a factor of two or so
     read = noise.sensors[0].drawn(5000, random)
     assert read.std() == pytest.approx(4e-3, rel=0.15)

@@ -171,8 +171,7 @@ def _smallest_first(entry: object) -> tuple[int, float]:
 
 def _notes(rigs: SimulatedRig, cases: Sequence[RehearsalCase]) -> tuple[str, ...]:
     """What was assumed."""
-    free = len(rigs.beliefs)
-    noise = "what the repeats of the rig do not repeat" if rigs.noise.repeated else "the sensors' white noise"
+    free, noise = len(rigs.beliefs), rigs.noise
     driven = (
         "the logged command and a loop that tracks the logged motion drive the rigs"
         if rigs.drive.tracks
@@ -185,7 +184,7 @@ def _notes(rigs: SimulatedRig, cases: Sequence[RehearsalCase]) -> tuple[str, ...
         *(still_notes(rigs.rig.experiments, rigs.rig) if rigs.planned else ()),
         OWN_LAWS,
         f"{free} parameters of each rig were drawn from the beliefs, at most 2 sd from the nominal values.",
-        f"Noise: {noise}, and {100 * rigs.noise.scatter:.1g} % scatter of each element's friction from run to run.",
+        f"Noise: {noise.words}, and {100 * noise.scatter:.1g} % scatter of each element's friction from run to run.",
         f"Drive: {driven}.",
         f"Asked for: {len(cases)} rigs, {clean} of them with nothing withheld.",
     )

@@ -51,13 +51,21 @@ class Sensor:
 @dataclass(frozen=True)
 class Noise:
     """All that makes two runs of one experiment differ: the sensors, and the sd of the logarithm of each element's
-    friction. `repeated`: whether repeats of the rig showed it. `command`: sd of white noise in the logged command, SI,
-    that does not move the rig."""
+    friction. `repeated`, `modelled`: whether repeats of the rig showed it, or what a model leaves. `command`: sd of
+    white noise in the logged command, SI, that does not move the rig."""
 
     sensors: tuple[Sensor, ...]
     scatter: float
     repeated: bool
     command: float = 0.0
+    modelled: bool = False
+
+    @property
+    def words(self) -> str:
+        """Where it comes from."""
+        if self.repeated:
+            return "what the repeats of the rig do not repeat"
+        return "what the best model leaves of the logs" if self.modelled else "the sensors' white noise"
 
 
 def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
@@ -74,7 +82,7 @@ def noise_of_rig(rig: Dataset, case: Case, floor: Floor | None) -> Noise:
             sensors.append(Sensor(signal.name, _white(signal, case, c), (), resolution))
     if floor is None:
         return Noise(tuple(sensors), RUN_TO_RUN, repeated=False)
-    return Noise(tuple(sensors), floor.tau, floor.repeated)
+    return Noise(tuple(sensors), floor.tau, floor.repeated, modelled=not floor.repeated)
 
 
 def stated_noise(rig: Dataset) -> Noise:
