@@ -32,9 +32,12 @@ def silent_inputs(equation: Equation, logs: Logs) -> Iterator[Finding]:
     fit = found.fit(np.full(len(equation.predicted), SHARE))
     slopes = zip(found.unknowns, found.slopes(fit.x), strict=True)
     largest = max((rms(slope[0]) for unknown, slope in slopes if unknown.logarithm), default=np.inf)
-    if rms(found.residual[0]) > NEEDED * found.size[0] and rms(fit.residual[0]) > UNBALANCED * largest:
+    are_zeros = not any(e.data[name].any() for e in equation.dataset for name in names)  # which contribute nothing
+    needed = are_zeros or rms(found.residual[0]) > NEEDED * found.size[0]
+    if needed and rms(fit.residual[0]) > UNBALANCED * largest:
         for name in names:
-            detail = f"{name} is noise in every experiment, yet the rig moves: was the right channel logged?"
+            reads = "0" if are_zeros else "noise"
+            detail = f"{name} is {reads} in every experiment, yet the rig is driven: was the right channel logged?"
             yield Finding(problem="uninformative", signal=name, detail=detail, blocks=True)
 
 
@@ -56,4 +59,4 @@ def _noisy(dataset: Dataset, names: list[str]) -> list[str]:
 def _is_noise(dataset: Dataset, name: str) -> bool:
     records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset]
     white = float(np.median([white_noise_sd(record) for record in records]))
-    return white > 0.0 and float(np.std(np.concatenate(records))) <= NOISE * white
+    return float(np.std(np.concatenate(records))) <= NOISE * white

@@ -83,12 +83,14 @@ def _require_motion(
     info: catalog.SystemInfo,
     controller: Controller | None,
 ) -> None:
-    """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing."""
+    """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing. A
+    motor that is off lets the rig swing freely, which does."""
     required = [signal.name for signal in info.inputs if signal.required]
-    if controller is not None:  # the replay computes the motor's command, from a reference that moves or is disturbed
-        required = [name for name in required if info.command is None or name != info.command.name]
-        if controller.disturbance is None or _is_constant(experiments, controller.disturbance):
-            required.append(controller.reference)
+    if info.command is not None and (controller is not None or _is_off(experiments, info.command.name)):
+        required.remove(info.command.name)
+    # A controller computes the motor's command, from a reference that moves or is disturbed.
+    if controller is not None and (controller.disturbance is None or _is_constant(experiments, controller.disturbance)):
+        required.append(controller.reference)
     for spec in signals:
         if spec.name in required and _is_constant(experiments, spec.name):
             value = experiments[0].data[spec.name].iloc[0]
@@ -108,6 +110,10 @@ def _require_moving_output(experiments: tuple[Experiment, ...], signals: Iterabl
 
 def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:
     return all(bool((frame == frame.iloc[0]).all()) for frame in (experiment.data[name] for experiment in experiments))
+
+
+def _is_off(experiments: Iterable[Experiment], name: str) -> bool:
+    return not any(experiment.data[name].any() for experiment in experiments)
 
 
 def _doubts(experiments: Iterable[Experiment], signals: Iterable[SignalSpec], *, info: catalog.SystemInfo) -> list[str]:

@@ -52,6 +52,7 @@ def _read_signal(table: Table, name: str, *, role: str, expected: str | None, ho
         noise_sd=spread["noise_sd"],
         resolution=spread["resolution"],
         si_unit=si_unit,
+        hold_stated="hold" in table.values,
     )
 
 

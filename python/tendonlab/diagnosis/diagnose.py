@@ -15,6 +15,7 @@ from tendonlab.diagnosis.answer.answer import answer
 from tendonlab.diagnosis.answer.confirm import confirmed
 from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
+from tendonlab.diagnosis.holding import straight_inputs
 from tendonlab.diagnosis.search.select import Search, select_effects
 from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
@@ -72,12 +73,12 @@ def diagnose(
     system = dataset.system() if system is None else system
     _require_samples(dataset, system)
     with open_workshop(names, progress=progress) as shop:
-        search, nominal, loop = _search(dataset, system, shop)
+        search, nominal, loop, doubts = _search(dataset, system, shop)
         found = _checked_again(found, dataset, search)
         if found.blocks and not force:
             return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
         why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
-    warnings = (FORCED, *why.warnings) if found.blocks else why.warnings
+    warnings = (*((FORCED,) if found.blocks else ()), *doubts, *why.warnings)
     return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
 
 
@@ -87,11 +88,20 @@ def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
     system = dataset.system()
     _require_samples(dataset, system)
     with open_workshop(None, progress=progress) as shop:
-        search, _, _ = _search(dataset, system, shop)
-        return search.final
+        return _search(dataset, system, shop)[0].final
 
 
-def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None]:
+def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None, tuple[str, ...]]:
+    """What `_searched` finds, and a warning where inputs were not held between their samples: if nobody states that
+    they are, they are taken as straight."""
+    found = _searched(dataset, system, shop)
+    drawn = straight_inputs(dataset, found[0], shop)
+    if drawn is None:
+        return *found, ()
+    return *(found if drawn.is_stated_otherwise else _searched(drawn.dataset, system, shop)), (drawn.words,)
+
+
+def _searched(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None]:
     """A finished search; the untouched simulator, fitted in its initial states alone; and the logs with their
     controller, where models were weighed without."""
     few = thinned(dataset, system)

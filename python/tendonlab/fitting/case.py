@@ -27,6 +27,11 @@ NUMERICS_SHARE = 0.05  # of the sensors' noise that the simulator's own error ma
 TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; and the share of the noise at most then
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
+NEXT_TO_0 = 0.02  # of the effort that the motion takes: a command no larger says nothing of the scale of torques
+OFF = (
+    "The motor is off in every training experiment. Free motion tells ratios of torques, inertias and stiffness alone, "
+    "so the best known of these is taken at its word: all others are as wrong as that one."
+)
 START = 0.2  # s of the first measured part of an experiment, from which its initial state is estimated
 
 
@@ -208,6 +213,30 @@ class Case:
         return frozenset({port.element for port in info.ports} - moving)
 
     @cached_property
+    def motor_is_off(self) -> bool:
+        """Whether the motor is commanded next to nothing in every training experiment."""
+        command = self.system.info.command
+        return command is not None and self.replay.kind != "controller" and self._is_zero(command.name)
+
+    @cached_property
+    def swings_freely(self) -> bool:
+        """Whether nothing known moves the rig in any training experiment: neither motor nor torque nor payload."""
+        efforts = (s.name for s in self.system.info.inputs if s.dimension == "effort")
+        no_payload = not any(self.experiments[i].add for i in self.train)
+        return self.motor_is_off and no_payload and all(map(self._is_zero, efforts))
+
+    def _is_zero(self, name: str) -> bool:
+        """Whether an input was not logged in any training experiment, or is next to 0 beside what it takes to move the
+        rig as it moved."""
+        logs = [self.experiments[i].data[name] for i in self.train if name in self.experiments[i].data]
+        gain = self.system.info.with_role("command_gain") if name == self.system.info.inputs[0].name else None
+        per = 1.0 if gain is None else self.system.parameters[gain.name]
+        _, inertia, _ = _core.rigid_motion(self.system.kind, self.system.values(), self.system.active())
+        moved = self.scales[self.system.info.ports[0].element]
+        taken = float(inertia) * moved.flow**2 / moved.displacement
+        return all(per * float(np.sqrt(np.mean(np.square(log)))) <= NEXT_TO_0 * taken for log in logs)
+
+    @cached_property
     def _conditions(self) -> list[tuple[dict[int, float], dict[int, float]]]:
         """Parameters that each experiment fixes, and those it adds to; other names are covariates. Conditions of an
         effect that the simulator lacks count as well: a candidate may have it."""
@@ -238,6 +267,8 @@ def make_case(
     noise = sensor_noise(dataset, system, prepared)
     known = scales(system, prepared)
     case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
+    if case.swings_freely:
+        case = replace(case, dataset=replace(dataset, warnings=(*dataset.warnings, OFF)))
     return case if tolerance else fine_enough(case, noise)
 
 

@@ -17,6 +17,7 @@ from tendonlab.simulation.catalog import DIMENSIONS, PORT_QUANTITIES, ParameterI
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
+OF_TORQUE = ("inertia", "effort", "damping", "stiffness")  # dimensions that scale with all torques
 LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 3.0
 
 
@@ -92,6 +93,19 @@ def free_parameters(
     if not rows:
         raise ParameterError("no parameter is free: expected at least one with sd > 0 or without sd")
     return rows
+
+
+def with_scale_held(system: System, rows: Sequence[Free]) -> list[Free]:
+    """The free parameters `rows` of a rig that no known torque moves: logs tell ratios of torques, inertias, stiffness
+    and damping there. So the one of these that is known best is taken at its word, unless one of them is known."""
+    free = {row.name for row in rows}
+    of_torque = [
+        p.name for p in system.info.parameters if p.dimension in OF_TORQUE and system.parameters.get(p.name, 0.0) != 0.0
+    ]
+    if not free.issuperset(of_torque):
+        return list(rows)
+    best = min((row for row in rows if row.log and row.name in of_torque), key=lambda row: row.sd, default=None)
+    return [row for row in rows if row is not best]
 
 
 def start_of(system: System, effect: str, of: Mapping[str, Scale]) -> dict[str, float]:

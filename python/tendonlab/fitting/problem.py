@@ -19,7 +19,7 @@ from tendonlab.fitting.centred import centred
 from tendonlab.fitting.fitted import Fitted, Run
 from tendonlab.fitting.floor import Sensitivities, whitenings
 from tendonlab.fitting.noise import Floor, blocks_of, white
-from tendonlab.fitting.priors import free_parameters
+from tendonlab.fitting.priors import free_parameters, with_scale_held
 from tendonlab.fitting.uncertainty import informed
 from tendonlab.simulation.system import System
 
@@ -290,6 +290,8 @@ def pose(
     """The fit of `system`, which has the effects `added` beyond the nominal ones, from its own values and from the
     `initial` unknowns of each experiment. `known`: its parameters are, and only those unknowns are fitted."""
     rows = [] if known else free_parameters(system, case.dataset.parameters, case.scales, added=added)
+    if case.swings_freely:
+        rows = with_scale_held(system, rows)
     free = tuple(f.started(system.parameters[f.name]) for f in rows)
     start = tuple(tuple(own) for own in initial)
     return Problem(case=case, floor=floor, system=system, added=tuple(added), free=free, initial=start)

@@ -44,7 +44,8 @@ class Controller:
 @dataclass(frozen=True)
 class SignalSpec:
     """A signal as declared: read from `column`, written there in `unit`, kept here in `si_unit`. `noise_sd` and
-    `resolution` are in `si_unit`. `role`: "input", "output", "reference", "disturbance" or "covariate"."""
+    `resolution` are in `si_unit`. `role`: "input", "output", "reference", "disturbance" or "covariate". `hold`: whether
+    each value stays until the next sample; `hold_stated`: the user says so, it is no default."""
 
     name: str
     column: str
@@ -54,6 +55,7 @@ class SignalSpec:
     noise_sd: float | None = None
     resolution: float | None = None
     si_unit: str = "1"
+    hold_stated: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

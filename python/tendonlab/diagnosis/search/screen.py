@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,12 +17,14 @@ from tendonlab.fitting.fitted import Fitted, solved
 from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
 from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
+from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.system import System
 
 SHAPES = (0.2, 1.0, 5.0, 25.0)  # of the typical shape
 WHOLE_SHAPES = (0.3, 1.0, 3.0)  # of the typical first shape of a whole friction
 AMPLITUDES = (0.1, 0.5)  # of the effect's unit
 DELAYS = (*AMPLITUDES, 2.0, 8.0)  # the same of a delay: where outputs jump, a slope tells nothing of one that is long
+ACTUATION = "actuation"
 INVISIBLE = 1.0  # nats that an effect of typical size must at least be worth to be visible
 
 
@@ -66,11 +68,26 @@ def candidates(case: Case, base: Fitted, asked: Sequence[str] | None = None) -> 
     def applies(e: EffectInfo) -> bool:
         if e.element in case.idle or not (asked is None or e.name in asked):
             return False
+        if case.motor_is_off and not _acts_at_rest(case, e):
+            return False
         if e.roles & WHOLE:
             return asked is not None and can_be_seen(e, measured) and can_replace(e, base.system, base.added)
         return can_be_seen(e, measured) and can_be_added(e, base.system)
 
     return [e.name for e in info.effects if applies(e)]
+
+
+def _acts_at_rest(case: Case, effect: EffectInfo) -> bool:
+    """Whether an effect of the actuation moves the rig though the command is 0. If not, it could only change what an
+    injection adds."""
+    if effect.element != ACTUATION:
+        return True
+    command, run = case.system.info.inputs[0].name, case.experiments[case.train[0]]
+    run = replace(run, data=run.data.assign(**{command: 0.0}))
+    free = replace(case, replay=Replay("free")).playing(run)
+    typical = {p.name: _unit(case, p) for p in map(case.system.info.parameter, effect.parameters) if p.amplitude}
+    (without, with_it), _ = free.run_together(0, [case.system, extended(case.system, {effect.name: typical})])
+    return not np.array_equal(without, with_it, equal_nan=True)
 
 
 def can_be_seen(effect: EffectInfo, measured: Collection[str]) -> bool:

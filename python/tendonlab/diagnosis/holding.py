@@ -1,0 +1,89 @@
+"""Whether an input that is said to be held between its samples was smooth: a torque that was measured, or computed
+without steps. Held, it comes half a sample late, which no effect of the library mends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from tendonlab.data import Dataset
+from tendonlab.diagnosis.floor import ROUGH
+from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.workshop import Workshop
+from tendonlab.errors import NumericalError
+from tendonlab.fitting.case import Case, make_case
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import white
+from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.thinning import thinned
+from tendonlab.simulation.system import System
+
+LEFT = 0.5  # share of what lies above the sensors' noise that straight lines may leave, to be believed
+EXPLAINED = 1.3  # mean square, in units of that noise, below which held samples explain the logs
+
+DRAWN = "{} is taken as straight between its samples: held, it leaves {:.3g} times the mean square error. State {}."
+DOUBTED = (
+    "{} is stated as held between its samples (hold = true), but straight between them the logs fit with {:.3g} times "
+    "less mean square error. State hold = false if it was measured, or is no command of a computer."
+)
+
+
+@dataclass(frozen=True)
+class Straight:
+    """The `dataset` with its held `inputs` straight between their samples, and the share of the mean square error that
+    this leaves."""
+
+    dataset: Dataset
+    left: float
+    inputs: tuple[str, ...]
+
+    @property
+    def is_stated_otherwise(self) -> bool:
+        """Whether the user states that one of them is held."""
+        return any(self.dataset.signals[name].hold_stated for name in self.inputs)
+
+    @property
+    def words(self) -> str:
+        """The warning that says so."""
+        names = " and ".join(self.inputs)
+        if self.is_stated_otherwise:
+            return DOUBTED.format(names, 1.0 / self.left)
+        return DRAWN.format(names, 1.0 / self.left, "hold = false, or hold = true if it is a computer's command")
+
+
+def straight_inputs(dataset: Dataset, search: Search, shop: Workshop) -> Straight | None:
+    """Of an open loop: its inputs straight between their samples, where the final model then leaves less than half of
+    what it leaves above the sensors' noise; else None."""
+    system = search.final.system
+    names = tuple(_held(dataset, system))
+    if not names or dataset.controller is not None or system.info.sampled:
+        return None
+    held = _under_white(search.fitter.case, search.final, shop)
+    if held.mean_square < EXPLAINED:
+        return None
+    drawn = _straight(dataset, names)
+    try:
+        case = make_case(thinned(drawn, dataset.system()), search.fitter.case.system)
+        left = _under_white(case, search.final, shop).mean_square
+    except NumericalError:
+        return None
+    return Straight(drawn, left / held.mean_square, names) if left - 1.0 < LEFT * (held.mean_square - 1.0) else None
+
+
+def _held(dataset: Dataset, system: System) -> Iterable[str]:
+    """Names of the held inputs that drive it; a switch is none."""
+    drives = {given.name for given in system.info.inputs if given.dimension != "ratio"}
+    return (name for name, spec in dataset.signals.items() if spec.role == "input" and spec.hold and name in drives)
+
+
+def _straight(dataset: Dataset, names: Iterable[str]) -> Dataset:
+    free = dict.fromkeys(names, False)
+    signals = {name: replace(spec, hold=free.get(name, spec.hold)) for name, spec in dataset.signals.items()}
+    runs = tuple(replace(e, holds=e.holds | free) for e in dataset.experiments)
+    return replace(dataset, signals=signals, experiments=runs)
+
+
+def _under_white(case: Case, model: Fitted, shop: Workshop) -> Fitted:
+    """The model fitted under the sensors' noise alone."""
+    fitter = Fitter(case, white(case.noise), shop.cancel)
+    return fitter.fit(model.system, added=model.added, max_iterations=ROUGH)

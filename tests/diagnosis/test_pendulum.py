@@ -1,0 +1,98 @@
+"""A pendulum that scipy integrates: swings with the motor off, and a torque that is smooth between its samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.integrate import solve_ivp
+
+import tendonlab as tl
+
+INERTIA, GRAVITY, VISCOUS, COULOMB, STEP = 0.021, 0.9, 0.004, 0.01, 0.01
+STARTS = ((1.0, 0.0), (-0.7, 0.0), (0.5, 1.0), (1.3, -1.0))
+STATED = {"inertia": 1.15 * INERTIA, "gravity_torque": 0.93 * GRAVITY, "viscous": 0.7 * VISCOUS}
+
+
+def swing(
+    folder: Path, torque: Callable[[float, int], float], *, coulomb: float = 0.0, of_torque: str = ""
+) -> tl.Dataset:
+    """Four runs of 6 s, logged at 100 Hz with noise of 0.1 mrad; the last one is held out."""
+    random, time = np.random.default_rng(1), np.arange(0.0, 6.0, STEP)
+    text = 'format = "tendonlab-dataset/1"\nname = "pendulum"\ntime = { column = "t", unit = "s" }\n'
+    text += '[system]\nkind = "rigid_joint"\nnominal_effects = ["joint:viscous"]\n[system.parameters]\n'
+    text += "".join(
+        f"{k} = {{ value = {v}, sd = {(0.5 if k == 'viscous' else 0.15) * v} }}\n" for k, v in STATED.items()
+    )
+    text += f'[signals]\nmotor_torque = {{ column = "u", unit = "N*m"{of_torque} }}\n'
+    text += 'joint_angle = { column = "q", unit = "rad" }\n'
+    for k, start in enumerate(STARTS):
+
+        def rate(t: float, y: np.ndarray, k: int = k) -> tuple[float, float]:
+            friction = VISCOUS * y[1] + coulomb * np.tanh(y[1] / 0.002)
+            return y[1], (torque(t, k) - GRAVITY * np.sin(y[0]) - friction) / INERTIA
+
+        angle = solve_ivp(rate, (0.0, 6.0), start, t_eval=time, rtol=1e-8, atol=1e-9, method="LSODA").y[0]
+        logged = angle + 1e-4 * random.standard_normal(len(time))
+        given = [torque(t, k) for t in time]
+        pd.DataFrame({"t": time, "u": given, "q": logged}).to_csv(folder / f"run-{k}.csv", index=False)
+        split = "test" if k == len(STARTS) - 1 else "train"
+        text += f'[[experiments]]\nname = "run-{k}"\nfile = "run-{k}.csv"\nsplit = "{split}"\n'
+    (folder / "dataset.toml").write_text(text)
+    return tl.load(folder)
+
+
+def off(_t: float, _k: int) -> float:
+    return 0.0
+
+
+def smooth(t: float, k: int) -> float:
+    return float(0.3 * np.sin(2 * np.pi * (0.3 + 0.2 * k) * t))
+
+
+@pytest.mark.cpu(30)
+@pytest.mark.parametrize(("coulomb", "selected"), [(0.0, ()), (COULOMB, ("joint:coulomb",))])
+@pytest.mark.parametrize("command", ["zeros", "noise"])
+def test_free_swings_are_diagnosed_at_the_scale_that_is_stated(tmp_path, command, coulomb, selected) -> None:
+    rig = swing(tmp_path, off, coulomb=coulomb)
+    if command == "noise":
+        random = np.random.default_rng(2)
+        for log in tmp_path.glob("run-*.csv"):
+            (read := pd.read_csv(log)).assign(u=2e-3 * random.standard_normal(len(read))).to_csv(log, index=False)
+        rig = tl.load(tmp_path)
+    why = tl.diagnose(rig, progress=False)
+    assert why.selected == selected
+    assert why.verdict == ("effect" if selected else "parameters_only")
+    assert any("motor is off" in warning for warning in why.warnings)
+    if selected:  # gravity, with the same relative sd but listed later, follows the inertia that is held
+        found = why.effects[0].parameters["coulomb"]["value"]
+        assert found == pytest.approx(1.15 * COULOMB, rel=0.03)
+
+
+@pytest.mark.cpu(30)
+def test_a_torque_without_a_word_on_holding_is_taken_as_the_logs_have_it(tmp_path: Path) -> None:
+    why = tl.diagnose(swing(tmp_path, smooth), progress=False)
+    assert why.verdict == "parameters_only"
+    assert why.warnings[0].startswith("motor_torque is taken as straight between its samples")
+
+
+@pytest.mark.cpu(30)
+def test_a_torque_that_is_stated_as_held_stays_so_and_is_doubted(tmp_path: Path) -> None:
+    why = tl.diagnose(swing(tmp_path, smooth, of_torque=", hold = true"), progress=False)
+    assert why.verdict != "parameters_only"
+    assert why.warnings[0].startswith("motor_torque is stated as held between its samples")
+
+
+def test_a_command_of_zeros_may_be_a_motor_that_is_off(tmp_path: Path) -> None:
+    assert not tl.check(swing(tmp_path, off)).blocks
+
+
+def test_zeros_in_place_of_a_torque_that_moves_the_rig_block(tmp_path: Path) -> None:
+    swing(tmp_path, lambda t, k: float(2.0 * np.sin(2 * np.pi * 0.4 * (k + 1) * t)))
+    for log in tmp_path.glob("run-*.csv"):
+        pd.read_csv(log).assign(u=0.0).to_csv(log, index=False)
+    (problem,) = [f for f in tl.check(tl.load(tmp_path)).findings if f.blocks]
+    assert (problem.problem, problem.signal) == ("uninformative", "motor_torque")
