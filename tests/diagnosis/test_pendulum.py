@@ -73,6 +73,15 @@ def test_free_swings_are_diagnosed_at_the_scale_that_is_stated(tmp_path, command
 
 
 @pytest.mark.cpu(30)
+def test_one_driven_run_tells_the_scale(tmp_path: Path) -> None:
+    kicked = swing(tmp_path, lambda t, k: 0.5 if k == 0 and 2.0 <= t < 4.0 else 0.0, coulomb=COULOMB)
+    why = tl.diagnose(kicked, progress=False)
+    assert why.selected == ("joint:coulomb",)
+    assert why.effects[0].parameters["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.03)
+    assert not any("motor is off" in warning for warning in why.warnings)
+
+
+@pytest.mark.cpu(30)
 def test_a_torque_without_a_word_on_holding_is_taken_as_the_logs_have_it(tmp_path: Path) -> None:
     why = tl.diagnose(swing(tmp_path, smooth), progress=False)
     assert why.verdict == "parameters_only"

@@ -17,6 +17,7 @@ from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.catalog import PORT_QUANTITIES
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
+from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.system import System
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
@@ -27,10 +28,12 @@ NUMERICS_SHARE = 0.05  # of the sensors' noise that the simulator's own error ma
 TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; and the share of the noise at most then
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
+ALL_NOISE = 1.3  # times the white part of a log, within which all of it is noise
 NEXT_TO_0 = 0.02  # of the effort that the motion takes: a command no larger says nothing of the scale of torques
 OFF = (
-    "The motor is off in every training experiment. Free motion tells ratios of torques, inertias and stiffness alone, "
-    "so the best known of these is taken at its word: all others are as wrong as that one."
+    "The motor is off in every training experiment, and a command that reads noise alone is taken as 0. Free motion "
+    "tells ratios of torques, inertias and stiffness alone, so the best known of these is taken at its word: all others "
+    "are as wrong as that one."
 )
 START = 0.2  # s of the first measured part of an experiment, from which its initial state is estimated
 
@@ -40,7 +43,8 @@ class Case:
     """Experiments made ready. `noise`: sd of each output's white noise, NaN where it was not measured. `tolerance`:
     relative error of a step of the simulation. `scatter`: groups of parameters that differ by a common factor from run
     to run, and the sd of its logarithm. `num_attempts`: of the stepper, that the simulator itself takes in an
-    experiment at that tolerance, where that is known.
+    experiment at that tolerance, where that is known. `motor_is_off`: next to nothing is commanded in any training
+    experiment; `swings_freely`: nor is any other torque known, or payload, that moves the rig.
 
     Each experiment has unknowns of its own: the free parts of its initial state, then the logarithms of the factors."""
 
@@ -54,6 +58,8 @@ class Case:
     tolerance: float
     scatter: tuple[tuple[tuple[int, ...], float], ...] = ()
     num_attempts: int = 0
+    motor_is_off: bool = False
+    swings_freely: bool = False
 
     @property
     def train(self) -> tuple[int, ...]:
@@ -213,30 +219,6 @@ class Case:
         return frozenset({port.element for port in info.ports} - moving)
 
     @cached_property
-    def motor_is_off(self) -> bool:
-        """Whether the motor is commanded next to nothing in every training experiment."""
-        command = self.system.info.command
-        return command is not None and self.replay.kind != "controller" and self._is_zero(command.name)
-
-    @cached_property
-    def swings_freely(self) -> bool:
-        """Whether nothing known moves the rig in any training experiment: neither motor nor torque nor payload."""
-        efforts = (s.name for s in self.system.info.inputs if s.dimension == "effort")
-        no_payload = not any(self.experiments[i].add for i in self.train)
-        return self.motor_is_off and no_payload and all(map(self._is_zero, efforts))
-
-    def _is_zero(self, name: str) -> bool:
-        """Whether an input was not logged in any training experiment, or is next to 0 beside what it takes to move the
-        rig as it moved."""
-        logs = [self.experiments[i].data[name] for i in self.train if name in self.experiments[i].data]
-        gain = self.system.info.with_role("command_gain") if name == self.system.info.inputs[0].name else None
-        per = 1.0 if gain is None else self.system.parameters[gain.name]
-        _, inertia, _ = _core.rigid_motion(self.system.kind, self.system.values(), self.system.active())
-        moved = self.scales[self.system.info.ports[0].element]
-        taken = float(inertia) * moved.flow**2 / moved.displacement
-        return all(per * float(np.sqrt(np.mean(np.square(log)))) <= NEXT_TO_0 * taken for log in logs)
-
-    @cached_property
     def _conditions(self) -> list[tuple[dict[int, float], dict[int, float]]]:
         """Parameters that each experiment fixes, and those it adds to; other names are covariates. Conditions of an
         effect that the simulator lacks count as well: a candidate may have it."""
@@ -267,9 +249,44 @@ def make_case(
     noise = sensor_noise(dataset, system, prepared)
     known = scales(system, prepared)
     case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
-    if case.swings_freely:
-        case = replace(case, dataset=replace(dataset, warnings=(*dataset.warnings, OFF)))
+    if (
+        system.info.command is not None
+        and replay.kind != "controller"
+        and _is_next_to_0(case, system.info.command.name)
+    ):
+        silent = tuple(_without_noise(e, system.info.command.name) for e in case.experiments)
+        prepared = tuple(_judged(prepare(e, system, replay), e) for e in silent)
+        case = _without_motor(replace(case, experiments=silent, prepared=prepared))
     return case if tolerance else fine_enough(case, noise)
+
+
+def _without_motor(case: Case) -> Case:
+    """The case whose motor is off, marked as such, with a warning where nothing else known moves the rig."""
+    others = (s.name for s in case.system.info.inputs[1:] if s.dimension == "effort")
+    if any(case.experiments[i].add for i in case.train) or not all(_is_next_to_0(case, name) for name in others):
+        return replace(case, motor_is_off=True)
+    warned = replace(case.dataset, warnings=(*case.dataset.warnings, OFF))
+    return replace(case, dataset=warned, motor_is_off=True, swings_freely=True)
+
+
+def _is_next_to_0(case: Case, name: str) -> bool:
+    """Whether an input was not logged in any training experiment, or is next to 0 beside what it takes to move the rig
+    as it moved."""
+    logs = [case.experiments[i].data[name] for i in case.train if name in case.experiments[i].data]
+    gain = case.system.info.with_role("command_gain") if name == case.system.info.inputs[0].name else None
+    per = 1.0 if gain is None else case.system.parameters[gain.name]
+    _, inertia, _ = _core.rigid_motion(case.system.kind, case.system.values(), case.system.active())
+    moved = case.scales[case.system.info.ports[0].element]
+    taken = float(inertia) * moved.flow**2 / moved.displacement
+    return all(per * float(np.sqrt(np.mean(np.square(log)))) <= NEXT_TO_0 * taken for log in logs)
+
+
+def _without_noise(experiment: Experiment, command: str) -> Experiment:
+    """The experiment with a command of 0 where its log reads nothing but noise: a sensor's, which moves nothing."""
+    log = experiment.data[command].to_numpy(dtype=float)
+    if np.std(log) > ALL_NOISE * white_noise_sd(log):
+        return experiment
+    return replace(experiment, data=experiment.data.assign(**{command: 0.0}))
 
 
 def _judged(ready: Prepared, experiment: Experiment) -> Prepared:
