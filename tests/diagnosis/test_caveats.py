@@ -30,9 +30,10 @@ def said(
     outlier: OutlierRun | None = None,
 ) -> tuple[str, ...]:
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
-    free: Any = SimpleNamespace(name="inertia", value=lambda x: 0.02 * float(np.exp(x)))
+    free: Any = SimpleNamespace(name="inertia", log=True, scale=0.02, value=lambda x: 0.02 * float(np.exp(x)))
+    at = np.log1p(0.1 * x) if x > -10.0 else -140.0
     final: Any = SimpleNamespace(
-        free=[free], x=[np.log1p(0.1 * x)], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2")
+        free=[free], x=[at], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2")
     )
     time = np.linspace(0.0, 20.0 * np.pi, 4001)
     parameters = {"inertia": stated or NominalParameter(0.02, 0.002)}
@@ -45,6 +46,11 @@ def said(
     )
     stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
     return caveats(final, Judged(case, FLOOR, stages, (), (0,), {}), drift, outlier)
+
+
+def test_a_logarithm_without_end_is_a_value_of_0() -> None:
+    (only,) = said(x=-10.0)
+    assert only == "Inertia was fitted at 0 kg·m²: 10 standard deviations from the stated 0.02 ± 0.002."
 
 
 def _of(error: float) -> Replayed:

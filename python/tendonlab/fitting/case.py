@@ -32,8 +32,8 @@ ALL_NOISE = 1.3  # times the white part of a log, within which all of it is nois
 NEXT_TO_0 = 0.02  # of the effort that the motion takes: a command no larger says nothing of the scale of torques
 OFF = (
     "The motor is off in every training experiment, and a command that reads noise alone is taken as 0. Free motion "
-    "tells ratios of torques, inertias and stiffness alone, so the best known of these is taken at its word: all others "
-    "are as wrong as that one."
+    "tells ratios of torques, inertias and stiffness alone, so the best known of these is taken at its word: all "
+    "others are as wrong as that one."
 )
 START = 0.2  # s of the first measured part of an experiment, from which its initial state is estimated
 

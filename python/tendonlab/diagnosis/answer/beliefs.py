@@ -6,8 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tendonlab._core import Free
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
+
+VANISHED = 1e-6  # of the stated value: less says 0 on a logarithmic scale, where nothing stops a fit
 
 
 class Pulled(NamedTuple):
@@ -27,10 +30,15 @@ def pulled(case: Case, fitted: Fitted) -> list[Pulled]:
     for free, x in zip(fitted.free, fitted.x, strict=True):
         stated = case.dataset.parameters.get(free.name)
         if stated is not None and stated.sd and np.isfinite(stated.sd):
-            value = free.value(float(x))
+            value = 0.0 if has_vanished(free, float(x)) else free.value(float(x))
             away = abs(value - stated.value) / stated.sd
             found.append(Pulled(free.name, value, stated.value, stated.sd, away))
     return found
+
+
+def has_vanished(free: Free, x: float) -> bool:
+    """Whether the logarithm of a parameter fell so far that its value is 0."""
+    return free.log and free.value(x) < VANISHED * free.scale
 
 
 def strain(case: Case, fitted: Fitted) -> float:

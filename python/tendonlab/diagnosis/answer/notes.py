@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.diagnosis.answer import where
+from tendonlab.diagnosis.answer.beliefs import has_vanished
 from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
@@ -85,7 +86,8 @@ def _on_the_split(case: Case) -> list[str]:
 
 def _on_the_fits(search: Search) -> list[str]:
     final, messages = search.final, []
-    silent = final.not_informed
+    vanished = {f.name for f, x in zip(final.free, final.x, strict=True) if has_vanished(f, float(x))}
+    silent = [name for name in final.not_informed if name not in vanished]
     bound = [f.name for f, at in zip(final.free, final.at_bound, strict=True) if at and f.name not in silent]
     if bound:
         messages.append(f"At a bound: {', '.join(bound)}. Such a value is a limit and not an estimate.")
