@@ -32,9 +32,7 @@ def said(
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
     free: Any = SimpleNamespace(name="inertia", log=True, scale=0.02, value=lambda x: 0.02 * float(np.exp(x)))
     at = np.log1p(0.1 * x) if x > -10.0 else -140.0
-    final: Any = SimpleNamespace(
-        free=[free], x=[at], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2")
-    )
+    final: Any = SimpleNamespace(free=[free], x=[at], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2"))
     time = np.linspace(0.0, 20.0 * np.pi, 4001)
     parameters = {"inertia": stated or NominalParameter(0.02, 0.002)}
     case: Any = SimpleNamespace(

@@ -95,8 +95,19 @@ def test_a_torque_that_is_stated_as_held_stays_so_and_is_doubted(tmp_path: Path)
     assert why.warnings[0].startswith("motor_torque is stated as held between its samples")
 
 
-def test_a_command_of_zeros_may_be_a_motor_that_is_off(tmp_path: Path) -> None:
-    assert not tl.check(swing(tmp_path, off)).blocks
+@pytest.mark.parametrize("coulomb", [0.0, COULOMB])
+def test_free_motion_tells_no_lag(tmp_path: Path, coulomb: float) -> None:
+    found = tl.check(swing(tmp_path, off, coulomb=coulomb))
+    assert not found.findings
+    assert "the motor is off" in found.notes[0]
+
+
+def test_lags_are_those_of_the_runs_that_are_driven(tmp_path: Path) -> None:
+    swing(tmp_path, lambda t, k: smooth(t, k) if k != 1 else 0.0, coulomb=COULOMB)
+    late = pd.read_csv(tmp_path / "run-0.csv")
+    late.assign(u=late.u.shift(-20, fill_value=0.0)).to_csv(tmp_path / "run-0.csv", index=False)
+    (finding,) = [f for f in tl.check(tl.load(tmp_path)).findings if f.problem == "clock"]
+    assert finding.experiment in (None, "run-0")
 
 
 def test_zeros_in_place_of_a_torque_that_moves_the_rig_block(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from tendonlab.checking.clocks import clock_findings
 from tendonlab.checking.copies import copy_findings
 from tendonlab.checking.dead import dead_outputs
+from tendonlab.checking.driven import free_runs
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.finding import PROBLEMS, Check, Finding
 from tendonlab.checking.lags import lags
@@ -26,6 +27,7 @@ from tendonlab.threads import with_one_blas_thread
 EXPLAINED = 0.5  # level of the residual beyond which the equation explains too little to tell a lag
 UNMOVED = "Signs, scales and lags could not be checked: no position that the system knows was measured in motion."
 UNTIMED = "Signs, scales and lags could not be checked: {kind} has steady points, no time."
+UNDRIVEN = "Lags could not be checked: the motor is off, and free motion is alike at any time."
 UNEXPLAINED = (
     "Lags could not be checked: no lag brings these logs close to the simulator's equations. The check ignores effects "
     "with memory, such as presliding. Parameters far off or a missing effect may be the cause as well."
@@ -80,6 +82,14 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
 
 
 def _clocks(equation: Equation, logs: Logs) -> tuple[list[Finding], list[str]]:
+    """Lags, of the experiments that a motor drives."""
+    if off := free_runs(equation, logs):
+        driven = tuple(e for k, e in enumerate(equation.dataset) if k not in off)
+        equation = Equation(replace(equation.dataset, experiments=driven), equation.system)
+        left = read_logs(equation.dataset, equation.system.info) if driven else None
+        if left is None:
+            return [], [UNDRIVEN]
+        logs = left
     dataset, late = equation.dataset, lags(equation, logs)
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]

@@ -16,6 +16,7 @@ from tendonlab.fitting.noise import blocks_of, sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.catalog import PORT_QUANTITIES
+from tendonlab.simulation.command import is_next_to_0
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
 from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.system import System
@@ -29,7 +30,6 @@ TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; an
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
 ALL_NOISE = 1.3  # times the white part of a log, within which all of it is noise
-NEXT_TO_0 = 0.02  # of the effort that the motion takes: a command no larger says nothing of the scale of torques
 OFF = (
     "The motor is off in every training experiment, and a command that reads noise alone is taken as 0. Free motion "
     "tells ratios of torques, inertias and stiffness alone, so the best known of these is taken at its word: all "
@@ -249,36 +249,33 @@ def make_case(
     noise = sensor_noise(dataset, system, prepared)
     known = scales(system, prepared)
     case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
-    if (
-        system.info.command is not None
-        and replay.kind != "controller"
-        and _is_next_to_0(case, system.info.command.name)
-    ):
-        silent = tuple(_without_noise(e, system.info.command.name) for e in case.experiments)
+    if replay.kind != "controller" and _motor_is_off(case):
+        silent = tuple(_without_noise(e, system.info.inputs[0].name) for e in case.experiments)
         prepared = tuple(_judged(prepare(e, system, replay), e) for e in silent)
         case = _without_motor(replace(case, experiments=silent, prepared=prepared))
     return case if tolerance else fine_enough(case, noise)
 
 
-def _without_motor(case: Case) -> Case:
-    """The case whose motor is off, marked as such, with a warning where nothing else known moves the rig."""
-    others = (s.name for s in case.system.info.inputs[1:] if s.dimension == "effort")
-    if any(case.experiments[i].add for i in case.train) or not all(_is_next_to_0(case, name) for name in others):
-        return replace(case, motor_is_off=True)
-    warned = replace(case.dataset, warnings=(*case.dataset.warnings, OFF))
-    return replace(case, dataset=warned, motor_is_off=True, swings_freely=True)
-
-
-def _is_next_to_0(case: Case, name: str) -> bool:
-    """Whether an input was not logged in any training experiment, or is next to 0 beside what it takes to move the rig
-    as it moved."""
-    logs = [case.experiments[i].data[name] for i in case.train if name in case.experiments[i].data]
-    gain = case.system.info.with_role("command_gain") if name == case.system.info.inputs[0].name else None
-    per = 1.0 if gain is None else case.system.parameters[gain.name]
+def _motor_is_off(case: Case) -> bool:
+    """Whether the command is next to 0 in every training experiment, beside what it takes to move as the rig moved."""
+    command = case.system.info.command
+    if command is None:
+        return False
     _, inertia, _ = _core.rigid_motion(case.system.kind, case.system.values(), case.system.active())
     moved = case.scales[case.system.info.ports[0].element]
     taken = float(inertia) * moved.flow**2 / moved.displacement
-    return all(per * float(np.sqrt(np.mean(np.square(log)))) <= NEXT_TO_0 * taken for log in logs)
+    logs = (case.experiments[i].data.get(command.name) for i in case.train)
+    return all(log is not None and is_next_to_0(case.system, log.to_numpy(dtype=float), taken) for log in logs)
+
+
+def _without_motor(case: Case) -> Case:
+    """The case whose motor is off, marked as such, with a warning where nothing else known moves the rig."""
+    runs = [case.experiments[i] for i in case.train]
+    efforts = [s.name for s in case.system.info.inputs[1:] if s.dimension == "effort"]
+    if any(run.add or any(name in run.data and run.data[name].any() for name in efforts) for run in runs):
+        return replace(case, motor_is_off=True)
+    warned = replace(case.dataset, warnings=(*case.dataset.warnings, OFF))
+    return replace(case, dataset=warned, motor_is_off=True, swings_freely=True)
 
 
 def _without_noise(experiment: Experiment, command: str) -> Experiment:
