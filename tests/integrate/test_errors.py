@@ -135,7 +135,7 @@ DRAWN = {
     "joint_viscous": magnitude(-5, 1), "joint_static_excess": magnitude(-4, 0),
     "joint_stribeck_velocity": magnitude(-4, 0),
     "joint_bristle_stiffness": magnitude(-1, 5), "joint_bristle_damping": magnitude(-4, 2),
-    "joint_presliding_share": st.floats(0.0, 1.0), "joint_level_asymmetry": st.floats(-1.0, 1.0),
+    "joint_presliding_share": st.floats(0.0, 1.0), "joint_level_asymmetry": st.floats(-0.999, 0.999),
     "joint_viscous_asymmetry": st.just(0.0), "motor_load_dependence": st.floats(0.0, 1.0),
     "contact_load_dependence": st.floats(0.0, 1.0), "cable_backlash": magnitude(-5, 0),
     "actuation_delay": st.floats(0.0, 0.05), "actuation_gain_error": st.floats(-0.9, 2.0),

@@ -16,12 +16,13 @@ struct Asymmetry {
                                     summary =
                                         "direction-dependent friction: level and viscous friction differ by direction";
   static constexpr unsigned roles = role::factor | role::force, sees = sees_velocity;
+  static constexpr double most = 0.999;  ///< without any friction one way, rounding alone decides what rests
   T level_asymmetry, viscous_asymmetry;
 
   static constexpr auto parameters() {
     return std::tuple{
-        parameter(&Asymmetry::level_asymmetry, "level_asymmetry", Dimension::ratio, Purpose::amplitude, 0.1, -1.0, 1.0,
-                  "share by which the dry level is larger forwards"),
+        parameter(&Asymmetry::level_asymmetry, "level_asymmetry", Dimension::ratio, Purpose::amplitude, 0.1, -most,
+                  most, "share by which the dry level is larger forwards"),
         parameter(&Asymmetry::viscous_asymmetry, "viscous_asymmetry", Dimension::damping, Purpose::amplitude, 0.03,
                   -inf, inf, "half the difference of viscous friction, forwards minus backwards")};
   }

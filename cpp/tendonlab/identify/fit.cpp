@@ -64,10 +64,11 @@ Places on_bound(const Problem& problem, const Vector& x, int side = 0) {
 /// iterations of earlier solves.
 class Watch final : public ceres::IterationCallback {
  public:
-  Watch(const Problem& fitted, const Options& given, const Vector& free, const Coordinates& states, const Places& fixed,
-        int steps, int before)
+  Watch(const Problem& fitted, const Options& given, const Vector& free, const Coordinates& states, Tally& summed,
+        const Places& fixed, int steps, int before)
       : problem(fitted),
         options(given),
+        tally(summed),
         x(free),
         z(states),
         held(fixed),
@@ -86,6 +87,7 @@ class Watch final : public ceres::IterationCallback {
       hopeless = iteration.iteration > 0 && options.goal_within * two < iteration.cost - options.goal;
       progress = change;
       cost = iteration.cost;
+      tally.accept(cost);
     }
     hopeless = hopeless || (done + iteration.iteration >= options.goal_within && cost > options.goal);
     iterations = iteration.iteration;
@@ -99,6 +101,7 @@ class Watch final : public ceres::IterationCallback {
   }
   const Problem& problem;
   const Options& options;
+  Tally& tally;
   const Vector& x;
   const Coordinates& z;
   const Places& held;
@@ -280,14 +283,14 @@ void hold(const Places& held, Vector& x, ceres::Problem& in) {
 /// Solves to the end. Ceres projects its steps on the bounds and crawls along them: what is pressed against one is
 /// fixed there while the rest is fitted, until nothing wants to move.
 Result settle(const Problem& problem, Predictions& predictions, const Options& options, ceres::Problem& solved,
-              Vector& x, Coordinates& z, const std::exception_ptr& thrown) {
+              Vector& x, Coordinates& z, Tally& tally, const std::exception_ptr& thrown) {
   Places held;
   int done = 0, patience = along_bounds;
   for (int round = 1;; ++round) {
     hold(held, x, solved);
     auto with = solver_options(options, x, z);
     with.max_num_iterations = options.max_iterations - done;
-    Watch watch(problem, options, x, z, held, patience, done);
+    Watch watch(problem, options, x, z, tally, held, patience, done);
     with.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
     ceres::Solve(with, &solved, &summary);
@@ -338,6 +341,7 @@ Result fit(const Problem& problem, const Options& options) {
   Vector x = start_of_free(problem);
   Coordinates z = start_of_states(problem, predictions);
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) predictions[e].at(x, z[e], true);  // throws at the start
+  Tally tally(problem.tasks.size());
   std::exception_ptr thrown;
   ceres::Problem solved;
   for (std::size_t e = 0; e < problem.tasks.size(); ++e) {
@@ -345,13 +349,13 @@ Result fit(const Problem& problem, const Options& options) {
     if (x.size() > 0) blocks.push_back(x.data());
     if (z[e].size() > 0) blocks.push_back(z[e].data());
     if (blocks.empty()) continue;  // nothing moves this experiment
-    solved.AddResidualBlock(new TaskCost(predictions[e], options.cancel, thrown), nullptr, blocks);
+    solved.AddResidualBlock(new TaskCost(predictions[e], options.cancel, thrown, tally, e), nullptr, blocks);
   }
   if (solved.NumResidualBlocks() == 0)
     throw ParameterError("free: none; expected at least one free parameter or initial state");
   add_priors(problem, x, z, solved);
   add_bounds(problem, x, solved);
   silence_log();
-  return settle(problem, predictions, options, solved, x, z, thrown);
+  return settle(problem, predictions, options, solved, x, z, tally, thrown);
 }
 }  // namespace tendonlab::identify

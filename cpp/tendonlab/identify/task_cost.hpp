@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
+#include <vector>
 
 #include "tendonlab/identify/predict.hpp"
 
@@ -30,12 +32,34 @@ inline RowMatrix rows_with(Eigen::MatrixXd products) {
   return rows * size.asDiagonal();
 }
 
+/// The cost of a point as Ceres sums it up, experiment by experiment. Where a part of it exceeds by far what a step may
+/// cost, the step is rejected whatever the rest costs: that need not be simulated.
+class Tally {
+ public:
+  explicit Tally(std::size_t num_tasks) : seen(num_tasks, false) {}
+  /// A step was accepted: others may cost less.
+  void accept(double cost) { most = far * cost; }
+  /// Task e comes next. The same one again begins another point; Ceres may leave out tasks that nothing moves.
+  void begin(std::size_t e) {
+    if (seen[e]) restart();
+    seen[e] = true;
+  }
+  bool is_lost() const { return sum > most; }
+  void add(double square) { sum += 0.5 * square; }
+  void restart() { sum = 0, seen.assign(seen.size(), false); }
+
+ private:
+  static constexpr double far = 2.0;  ///< times the cost: no interpolation along a step makes up for that
+  std::vector<bool> seen;
+  double sum = 0, most = std::numeric_limits<double>::infinity();
+};
+
 /// Hands one experiment to Ceres: as few rows as it has columns, of which all products are those of its thousands of
 /// samples. No exception may cross it: the first one is kept, and told after the solve.
 class TaskCost final : public ceres::CostFunction {
  public:
-  TaskCost(Remembered& predicted, const Cancel* stop, std::exception_ptr& first)
-      : prediction(predicted), cancel(stop), thrown(first) {
+  TaskCost(Remembered& predicted, const Cancel* stop, std::exception_ptr& first, Tally& summed, std::size_t own)
+      : prediction(predicted), cancel(stop), thrown(first), tally(summed), index(own) {
     const Prediction& of = prediction.of();
     set_num_residuals(static_cast<int>(of.num_free() + of.num_initial() + 1));
     if (of.num_free() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(of.num_free()));
@@ -43,6 +67,12 @@ class TaskCost final : public ceres::CostFunction {
   }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     if (cancel && cancel->load()) return false;
+    Eigen::Map<Eigen::VectorXd> residual(residuals, num_residuals());
+    tally.begin(index);
+    if (!jacobians && tally.is_lost()) {
+      residual.setZero();
+      return true;
+    }
     try {
       const Prediction& of = prediction.of();
       const std::size_t free_blocks = of.num_free() > 0 ? 1 : 0;
@@ -51,7 +81,7 @@ class TaskCost final : public ceres::CostFunction {
       };
       const Linearised& at =
           prediction.at(view(0, of.num_free()), view(free_blocks, of.num_initial()), jacobians != nullptr);
-      Eigen::Map<Eigen::VectorXd> residual(residuals, num_residuals());
+      tally.add(at.residual().squaredNorm());
       if (!jacobians) {
         residual.setZero();
         residual(0) = at.residual().norm();
@@ -68,6 +98,7 @@ class TaskCost final : public ceres::CostFunction {
       return true;
     } catch (...) {
       if (!thrown) thrown = std::current_exception();
+      tally.restart();
       return false;
     }
   }
@@ -76,6 +107,8 @@ class TaskCost final : public ceres::CostFunction {
   Remembered& prediction;
   const Cancel* cancel;
   std::exception_ptr& thrown;
+  Tally& tally;
+  std::size_t index;
 };
 
 }  // namespace tendonlab::identify
