@@ -44,8 +44,7 @@ class Recorder {
     const double reached = over.start + over.taken + 1e-12 * (1.0 + std::fabs(over.start));
     const double per_length = 1.0 / over.length;
     if constexpr (std::is_same_v<T, double>)
-      if (together && !plain_modes.frame.holds && !in.remembers)  // lanes keep no past for the loop to read
-        write_groups(s, over, reached, plain_modes.frame, in);
+      if (together && !plain_modes.frame.holds) write_groups(s, over, reached, plain_modes.frame, in);
     if (late)
       write_late(s, over, reached, port_modes, in);
     else
