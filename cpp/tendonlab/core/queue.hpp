@@ -8,7 +8,9 @@ template <class T>
 class Queue {
  public:
   bool empty() const { return first == items.size(); }
+  std::size_t size() const { return items.size() - first; }
   const T& front() const { return items[first]; }
+  const T& operator[](std::size_t i) const { return items[first + i]; }
   void push(const T& item) {
     if (2 * first > items.size()) items.erase(items.begin(), begin()), first = 0;
     items.push_back(item);

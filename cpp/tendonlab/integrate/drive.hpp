@@ -98,7 +98,7 @@ class Drive : public Readings<T> {
   void begin(const Motion<T, n>& at, double now) {
     if (!remembers) return;
     const auto axis = static_cast<std::size_t>(from.loop.axis);
-    past.begin(at.position[axis], at.velocity[axis], now, samples());
+    past.begin(at.position[axis], at.velocity[axis], now, samples() ? plain(sensor_late) : lateness(), samples());
     echo(now);
   }
   /// The motion has a kink at `now`. A late loop in continuous time passes it on later; the stepper lands there too.

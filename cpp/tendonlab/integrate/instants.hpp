@@ -5,7 +5,7 @@
 #include "tendonlab/integrate/simulation.hpp"
 
 namespace tendonlab::integrate {
-/// Only while no port sticks: what holds a port is not a matter of its laws.
+/// Not for the force at a port that sticks: what holds it is not a matter of its laws.
 template <template <class> class Of>
 class Instants {
   using System = Of<Lanes>;

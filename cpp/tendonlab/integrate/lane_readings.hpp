@@ -10,6 +10,7 @@ class LaneReadings : public Readings<Lanes> {
   /// Every lane reads as `one` does now.
   void follow(const Readings<double>& one) {
     late = one.late, sensor_late = one.sensor_late, bias = one.bias, held = one.held, side = one.side, pull = one.pull;
+    follow_pasts([&](int) -> const Readings<double>& { return one; });
     for (std::size_t k = 0; k < from.inputs.size(); ++k)
       if (from.inputs[k].holds) piece[k].fill(one.piece[k]);
     if (from.loop.reference.holds) reference_piece.fill(one.reference_piece);
@@ -28,10 +29,20 @@ class LaneReadings : public Readings<Lanes> {
     using R = Readings<double>;
     late = numbers(&R::late), sensor_late = numbers(&R::sensor_late), bias = numbers(&R::bias);
     held = numbers(&R::held), side = numbers(&R::side), pull = numbers(&R::pull);
+    follow_pasts(one);
     for (std::size_t k = 0; k < from.inputs.size(); ++k)
       if (from.inputs[k].holds) piece[k] = pieces([&](const R& of) { return of.piece[k]; });
     if (from.loop.reference.holds) reference_piece = pieces([](const R& of) { return of.reference_piece; });
     if (from.loop.disturbance.holds) disturbance_piece = pieces([](const R& of) { return of.disturbance_piece; });
+  }
+
+ private:
+  /// A sampled loop reads its past at its ticks, which its own simulation passes.
+  template <class One>
+  void follow_pasts(One one) {
+    remembers = false;
+    for (int l = 0; l < Lanes::count && !samples(); ++l) remembers = remembers || one(l).remembers;
+    if (remembers) past.follow_each([&](int l) { return one(l).remembers ? &one(l).past : nullptr; });
   }
 };
 }  // namespace tendonlab::integrate

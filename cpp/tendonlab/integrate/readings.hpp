@@ -26,7 +26,7 @@ class Readings {
     if (loop.kind == Loop::Kind::controller) {
       if (loop.sample_time > 0) return lift<S>(held);
       const S u = unlimited(position, velocity, now);
-      const Plain<T> edge = remembers ? clipped(plain(u)) : side;
+      const Plain<T> edge = edge_of(plain(u));
       const S limited = select(edge == 0.0, u, lift<S>(Plain<T>(edge * loop.limit)));
       return limited + loop.disturbance.value(S(now - lift<S>(late)), disturbance_piece);
     }
@@ -69,8 +69,8 @@ class Readings {
     const auto axis = static_cast<std::size_t>(loop.axis);
     const S then = now - lift<S>(late);
     S y = position[axis], rate = velocity[axis];
-    if constexpr (!in_lanes<T>)
-      if (remembers) std::tie(y, rate) = past.reading(S(then - lift<S>(sensor_late)), y, rate, now);
+    if (remembers)  // copies, so that loops without a past keep theirs in registers
+      std::tie(y, rate) = past.reading(S(then - lift<S>(sensor_late)), S(y), S(rate), S(now));
     const S r = loop.reference.value(then, reference_piece);
     const S dr = loop.reference_weight * loop.reference.slope(then, reference_piece);
     return loop.proportional * (r - (y + lift<S>(bias))) + loop.derivative * (dr - rate);
@@ -79,7 +79,7 @@ class Readings {
 
   const Experiment& from;
   T late, sensor_late, bias;
-  bool remembers;     ///< does the loop read the past?
+  bool remembers;     ///< does the loop (in lanes: that of any lane) read the past?
   Plain<T> side = 0;  ///< mode of the saturation: -1, 0, +1
   Plain<T> pull = 1;  ///< share of the injection: none where what a late sensor shows there was never logged
   Past<T> past;
@@ -89,6 +89,14 @@ class Readings {
   static bool is_late(const T& delay) { return any(plain(delay) > 0.0) || varies(delay); }
   bool needs_past() const {
     return from.loop.kind == Loop::Kind::controller && (is_late(sensor_late) || (is_late(late) && !samples()));
+  }
+  /// The limit that holds the command: a mode of the step, but where the loop reads the past.
+  Plain<T> edge_of(const Plain<T>& u) const {
+    if (!remembers) return side;
+    if constexpr (in_lanes<T>)
+      return past.choose(clipped(u), side);
+    else
+      return clipped(u);
   }
   template <class P>
   P clipped(const P& u) const {

@@ -44,7 +44,7 @@ class Recorder {
     const double reached = over.start + over.taken + 1e-12 * (1.0 + std::fabs(over.start));
     const double per_length = 1.0 / over.length;
     if constexpr (std::is_same_v<T, double>)
-      if (together && !plain_modes.frame.holds && !in.remembers)  // lanes keep no past for the loop to read
+      if (together && (!plain_modes.frame.holds || !asks_what_holds()))
         write_groups(s, over, reached, plain_modes.frame, in);
     if (late)
       write_late(s, over, reached, port_modes, in);
@@ -73,6 +73,13 @@ class Recorder {
     const T shown = system.sensor[channel].apply(seen);
     rows[channel][sample] = plain(shown);
     out.write_derivatives(channel, sample, shown, column, width);
+  }
+  /// Is the force at a port wanted that may stick?
+  bool asks_what_holds() const {
+    bool asks = shown.has(PortRows::force);
+    for (std::size_t i = 0; i < ports; ++i)
+      asks = asks || (wanted.force(static_cast<int>(i)) && System::ports[i].direction >= 0);
+    return asks;
   }
   static constexpr std::ptrdiff_t fewest = 3;  ///< samples that are written together
   /// Samples of one step, eight at a time from the `first` on, each as it was `ago` earlier: write(states, first).

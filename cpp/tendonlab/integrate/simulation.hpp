@@ -7,6 +7,7 @@
 #include "tendonlab/integrate/drive.hpp"
 #include "tendonlab/integrate/explicit_reach.hpp"
 #include "tendonlab/integrate/growth.hpp"
+#include "tendonlab/integrate/resting.hpp"
 #include "tendonlab/integrate/saltation.hpp"
 #include "tendonlab/integrate/stiffness.hpp"
 
@@ -59,6 +60,7 @@ class Simulation {
     bool pauses = false;      ///< ends on a knot of a smooth input,
     double knot = 0;          ///< this one
     bool explicitly = false;  ///< is an explicit step
+    bool rests = false;       ///< nothing moves in it, which tells nothing of other steps
   };
   void begin() {
     y.at.time = T(t);
@@ -93,8 +95,10 @@ class Simulation {
       throw NumericalError(sentence("simulation stopped at t = ", t, " s after ", settings.max_attempts,
                                     " step attempts; expected to reach t = ", end,
                                     " s: a parameter may be far too stiff, or the tolerance too small"));
+    if (!retakes && failures == 0 && !remembers && all_rest<Values>(values(y), plain_frame))
+      return stay(std::min(kink, end));
     const double reach = std::min(kink, end) - t;
-    // At rest nothing limits a step by its error: it must not pass over a push that is gone at its end.
+    // What sticks limits no step by its error: none must pass over a push that is gone at its end.
     const double knot = plain_frame.holds ? drive.next_knot(t + resolved()) - t : Signal::inf_time;
     Attempt next{std::min({h, drive.longest_step(), knot})};
     next.lands = next.length > (retakes ? reach : 0.95 * reach);
@@ -145,11 +149,12 @@ class Simulation {
   void reject(const Attempt& tried, double wish, Trajectory& trajectory) {
     ++trajectory.rejected;
     // Where steps fail in a row, the error does not fall as the method's order has it: each shrinks the more.
-    const double shrinks = tried.explicitly ? -wish : std::pow(-wish, ++failures);
+    const bool explicitly = tried.explicitly && !tried.rests;
+    const double shrinks = explicitly ? -wish : std::pow(-wish, ++failures);
     const double length = tried.length, shorter = length * std::max(0.15, shrinks);
     const double knot = drive.next_knot(t + resolved()) - t;
     if (length > knot && shorter < knot) pausing = patience, patience = std::min(2 * patience, MOST_PAUSES);
-    if (tried.explicitly)
+    if (explicitly)
       explicit_reach.failed(shorter);
     else
       shrink(shorter);
@@ -159,7 +164,7 @@ class Simulation {
   void accept(const Attempt& tried, Step<Y>& step, double wish, const Crossing& first, Trajectory& trajectory,
               Record&& record) {
     const double length = tried.length;
-    explicit_reach.learn(tried.explicitly, length, wish);
+    if (!tried.rests) explicit_reach.learn(tried.explicitly, length, wish);
     if (first.stale || (first.mode >= 0 && first.share < 0.97 && !tried.explicitly))
       return aim(first, length, trajectory);
     retakes = false, failures = 0;
@@ -178,7 +183,7 @@ class Simulation {
     else
       patience = FEWEST_PAUSES;
     const bool cut = tried.lands || tried.pauses || tried.explicitly;
-    h = cut ? std::max(h, length * wish) : trend.next(length * wish);
+    if (!tried.rests) h = cut ? std::max(h, length * wish) : trend.next(length * wish);
     if (cut || first.mode >= 0) trend = {};
     if (first.mode >= 0) {
       ++trajectory.events;
@@ -189,9 +194,20 @@ class Simulation {
     arrive();
   }
 
-  /// The shortest time that counts.
-  double resolved() const { return 1e-13 * (1.0 + std::fabs(t)); }
-
+  double resolved() const { return resolution(t); }
+  /// While nothing moves, an explicit step is exact however long it is. It passes the knots at which all modes hold.
+  Attempt stay(double most) const {
+    const double last = std::min(most, t + drive.longest_step());
+    PlainY ahead = values(y);
+    const double until = end_of_rest(drive, t, last, [&](double knot) {
+      ahead.at.time = knot;
+      int m = 0;
+      const auto toward = [&] { return plain_contact.toward(m, ahead, plain_frame, drive); };
+      while (m <= saturation && (!guarded(m) || margin(m, ahead, toward()) >= -on_guard)) ++m;
+      return m > saturation;
+    });
+    return {until - t, until == most, until < last, until, true, true};
+  }
   /// Up to a jump of the inputs, one or two explicit steps that are exact enough are less work than any others.
   void plan_explicitly(Attempt& next, double reach) {
     const double most = next.pauses ? next.length : reach, parts = explicit_reach.parts(most), length = most / parts;
@@ -251,32 +267,16 @@ class Simulation {
       if (after >= -on_guard) continue;
       const double before = margin(m, s.from, toward);
       if (before <= on_guard) return {m, 0, toward, true, before < -past_guard && m < System::directions};
-      const double share = root(m, toward, s, before, after);
+      const auto margin_at = [&](double share) {
+        PlainY state = s.at(share);
+        state.at.time = s.from.at.time + share * (s.to.at.time - s.from.at.time);
+        return margin(m, state, toward);
+      };
+      const double share = root(margin_at, before, after);
       if (share < first.share) first = {m, share, toward};
     }
     return first;
   }
-  /// Illinois on the dense output; ends on a point that the secant chose, never on a midpoint.
-  double root(int m, double toward, const Step<PlainY>& s, double low_value, double high_value) const {
-    double low = 0, high = 1, at = low_value / (low_value - high_value);
-    int side = 0;
-    for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
-      PlainY state = s.at(at);
-      state.at.time = s.from.at.time + at * (s.to.at.time - s.from.at.time);
-      const double f = margin(m, state, toward);
-      if (std::fabs(f) <= 1e-14) break;
-      if (f < 0) {
-        if (side < 0) low_value *= 0.5;
-        high = at, high_value = f, side = -1;
-      } else {
-        if (side > 0) high_value *= 0.5;
-        low = at, low_value = f, side = 1;
-      }
-      at = low + (high - low) * (low_value / (low_value - high_value));
-    }
-    return at;
-  }
-
   /// Changes a mode at its root, and all modes that follow from it at the same instant.
   void pass_event(const Crossing& at) {
     const Jump<System, T> jump(*this, at.mode, at.toward);

@@ -54,11 +54,6 @@ class BatchOf {
       own.recorder.emplace(own.system, experiment, own.out, sink.rows(point), 0, 0, integrate::PortRows{});
       own.alike = assemble_alike<Of>(described, own.with);
       own.recorder->write_together(own.alike);
-      if (own.simulation->inputs().remembers) {  // its loop reads the past, which lanes do not keep
-        own.simulation->run(own.out, *own.recorder);
-        finish(own, {});
-        return;
-      }
       own.simulation->begin();
       take_numbers(l);
     });
