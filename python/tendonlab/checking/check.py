@@ -65,12 +65,12 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
     """The experiments alone whose outputs lag the inputs otherwise than in the others, by the equation of `system`: a
     large effect hides a lag, and a simulator that has the effect shows the lag. How large the effect is, the late
     experiment may have misled: that stays free."""
-    if system.info.steady or (logs := read_logs(dataset, system.info)) is None:
+    if system.info.steady or (logs := read_logs(dataset, system.info, marked := marks(dataset))) is None:
         return ()
     own = [name for effect in system.effects for name in system.info.effect(effect).parameters]
     added = {name: NominalParameter(value=system.parameters[name]) for name in own if name in system.parameters}
     free = replace(dataset, parameters={**added, **dataset.parameters})
-    return tuple(finding for finding in _clocks(Equation(free, system), logs)[0] if finding.blocks)
+    return tuple(finding for finding in _clocks(Equation(free, system), logs, marked)[0] if finding.blocks)
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
@@ -78,15 +78,15 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
     factors = factors or list(silent_inputs(equation, logs))
     if factors:  # lags are judged once these are corrected
         return factors, []
-    return _clocks(equation, logs)
+    return _clocks(equation, logs, marked)
 
 
-def _clocks(equation: Equation, logs: Logs) -> tuple[list[Finding], list[str]]:
+def _clocks(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
     """Lags, of the experiments that a motor drives."""
     if off := free_runs(equation, logs):
         driven = tuple(e for k, e in enumerate(equation.dataset) if k not in off)
         equation = Equation(replace(equation.dataset, experiments=driven), equation.system)
-        left = read_logs(equation.dataset, equation.system.info) if driven else None
+        left = read_logs(equation.dataset, equation.system.info, marked) if driven else None
         if left is None:
             return [], [UNDRIVEN]
         logs = left

@@ -6,7 +6,7 @@ from tendonlab import _core
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import Logs
 from tendonlab.checking.terms import rms
-from tendonlab.simulation.command import is_next_to_0
+from tendonlab.simulation.motor import is_next_to_0
 
 
 def free_runs(equation: Equation, logs: Logs) -> frozenset[int]:

@@ -12,7 +12,7 @@ from tendonlab.checking.held import held_findings
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.report.numbers import counted, number, unit_text
-from tendonlab.simulation.reading import rounding_step, white_noise_sd
+from tendonlab.simulation.reading import common_step, rounding_step, white_noise_sd
 
 GAP = 1.5  # median steps between two stamps that make a gap
 JITTER, DRIFT = 0.02, 0.01  # relative: scatter of steps, and change of their median from the first to the last quarter
@@ -138,11 +138,9 @@ def _steps(dataset: Dataset) -> Iterator[Finding]:
         if spec.role != "output" or spec.resolution:
             continue
         records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset.experiments]
-        records = [r for r in records if len(r) > 10 and np.ptp(r) > 0]
-        steps = [rounding_step(r) for r in records]
-        if not records or not all(steps):
+        records = [r for r in records if len(r)]
+        if not (step := common_step(records)):
             continue
-        step = float(np.median(steps))
         travel = max(float(np.ptp(r)) for r in records)
         if step > max(COARSE * float(np.median([white_noise_sd(r) for r in records])), travel / FINE):
             size = f"{number(step)} {unit_text(spec.si_unit)}".rstrip()

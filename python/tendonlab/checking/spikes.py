@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tendonlab.checking.kicks import moves_the_rig
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.reading import smallest_change
 
@@ -37,7 +38,11 @@ def marks(dataset: Dataset) -> Marks:
         for name in e.data.columns
         if (role := dataset.signals[name].role) in ("input", "output")
     }
-    kicking = {name for name in dataset.inputs if _are_kicks(_sizes(dataset, name, found))}
+    kicking = {
+        name
+        for name in dataset.inputs
+        if _are_kicks(_sizes(dataset, name, found)) or moves_the_rig(dataset, name, found)
+    }
     return {key: np.zeros_like(mask) if key[1] in kicking else mask for key, mask in found.items()}
 
 

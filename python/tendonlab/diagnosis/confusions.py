@@ -85,6 +85,11 @@ CONFUSIONS = (
         ("actuation:gain_error", "all torque parameters together"), "nothing, unless one mass or torque is known"
     ),
     Confusion(
+        ("actuation:gain_error", "a torque sensor in the cable that reads too much or too little"),
+        "a known weight held by the joint: it tells which of the two torques is right",
+        where="sensor.cable_torque:bias",
+    ),
+    Confusion(
         ("sheath:pretension_loss", "a smaller friction coefficient of the sheath"),
         "a friction coefficient from runs whose pretension is sure; wrap angles far apart",
     ),

@@ -21,6 +21,7 @@ from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.noise import with_found_resolutions
 from tendonlab.fitting.problem import PLAIN, Fitter
 from tendonlab.fitting.replay import opened
 from tendonlab.fitting.thinning import thinned
@@ -94,6 +95,7 @@ def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
 def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None, tuple[str, ...]]:
     """What `_searched` finds, and a warning where inputs were not held between their samples: if nobody states that
     they are, they are taken as straight."""
+    dataset = with_found_resolutions(dataset)
     found = _searched(dataset, system, shop)
     drawn = straight_inputs(dataset, found[0], shop)
     if drawn is None:

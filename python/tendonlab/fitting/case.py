@@ -16,7 +16,7 @@ from tendonlab.fitting.noise import blocks_of, sensor_noise
 from tendonlab.fitting.priors import Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.catalog import PORT_QUANTITIES
-from tendonlab.simulation.command import is_next_to_0
+from tendonlab.simulation.motor import is_next_to_0
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
 from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.system import System

@@ -11,7 +11,7 @@ from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.errors import DatasetError
 from tendonlab.simulation.prepare import Prepared
-from tendonlab.simulation.reading import noise_sd
+from tendonlab.simulation.reading import common_step, noise_sd
 from tendonlab.simulation.records import SignalSpec
 from tendonlab.simulation.system import System
 
@@ -126,6 +126,19 @@ def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
 def rounding_of(signal: SignalSpec) -> float:
     """Sd of rounding to the resolution of a signal, in its unit."""
     return float((signal.resolution or 0.0) / np.sqrt(12.0))
+
+
+def with_found_resolutions(dataset: Dataset) -> Dataset:
+    """The dataset with the steps that its readings show, where neither resolution nor noise of a sensor is stated:
+    repeats are rounded alike, and do not show them."""
+    found: dict[str, SignalSpec] = {}
+    for name in dataset.outputs:
+        spec = dataset.signals[name]
+        if spec.resolution is None and spec.noise_sd is None:
+            step = common_step([e.data[name].dropna().to_numpy(dtype=float) for e in dataset if name in e.data])
+            if step:
+                found[name] = replace(spec, resolution=step)
+    return replace(dataset, signals=dataset.signals | found) if found else dataset
 
 
 def without_rounding(noise: float, signal: SignalSpec) -> float:

@@ -9,10 +9,8 @@ import numpy as np
 from tendonlab.arguments import JITTER
 from tendonlab.simulation.reading import is_noiseless
 from tendonlab.simulation.records import Controller, Experiment
-from tendonlab.simulation.system import System
 
 FEWEST = 10  # samples of which noise can be told
-NEXT_TO_0 = 0.02  # of the effort that a motion takes: a command no larger is that of a motor that is off
 HEARD = 0.5  # share of the noise of the reading that the logged command must hold
 OFF_CLOCK = 0.25  # of the period: samples that are further off the ticks do not show what the controller read
 
@@ -109,10 +107,3 @@ def disturbance_of(controller: Controller, experiment: Experiment, at: np.ndarra
         return np.asarray(np.interp(at, time, values))
     near = JITTER * float(np.min(np.diff(time)))
     return np.asarray(values[np.searchsorted(time, at + near, side="right") - 1])
-
-
-def is_next_to_0(system: System, command: np.ndarray, taken: float) -> bool:
-    """Whether a logged command is next to nothing beside the effort that the motion of the motor takes (rms)."""
-    gain = system.info.with_role("command_gain")
-    per = 1.0 if gain is None else system.parameters[gain.name]
-    return per * float(np.sqrt(np.nanmean(np.square(command)))) <= NEXT_TO_0 * taken

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 ROUNDING = 1e-9  # of its range: a record with less noise was computed, not measured
 REPEATED = 0.05  # share of samples equal to the one before, from which on readings may have been rounded
+FEWEST, SAME_STEP = 10, 0.01  # samples of a record that may show a step; share by which steps of records may differ
 SMALL, USUAL = 5.5, 0.15  # steps, up to which changes show whether all are whole; share of changes that are so small
 WHOLE, MOSTLY = 0.1, 0.9  # of a step, from whole ones; share of the small changes that must be so near
 
@@ -50,3 +53,14 @@ def smallest_change(values: np.ndarray) -> float:
     changes = np.abs(np.diff(values))
     changes = changes[changes > 1e-9 * max(float(np.ptp(values)), 1e-300)]
     return float(np.quantile(changes, 0.01)) if len(changes) else 0.0
+
+
+def common_step(records: Sequence[np.ndarray]) -> float:
+    """The step that the readings of one sensor were rounded to, as more than half of its records that move show it; 0
+    where they do not."""
+    moving = [r for r in records if len(r) > FEWEST and np.nanstd(r) > 0]
+    steps = np.array([rounding_step(r) for r in moving])
+    if 2 * np.count_nonzero(steps) <= len(steps):
+        return 0.0
+    middle = float(np.median(steps[steps > 0]))
+    return middle if 2 * np.count_nonzero(np.abs(steps - middle) < SAME_STEP * middle) > len(steps) else 0.0
