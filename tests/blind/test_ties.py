@@ -109,14 +109,34 @@ def test_a_tie_is_settled_where_the_right_effect_alone_is_sure(
     ("truth", "counts"),
     [
         ('effects = ["x:y"]', False),
-        ('effects = ["x:y"]\naccept = ["a:b"]', True),  # the twin of what is there
-        ('effects = ["a:b"]\naccept = ["c:d"]', True),  # close in the first logs, and asked for again
+        ('effects = ["x:y"]\naccept = ["a:b"]', False),  # close in the first logs only
+        ('effects = ["a:b"]\naccept = ["c:d"]', True),
         ('effects = ["a:b", "c:d"]', False),
     ],
 )
 def test_ties_of_which_one_effect_is_right_count(truth: str, counts: bool, tmp_path: Path) -> None:
     result = counted(tmp_path, report({"a:b": 0.95}), truth)
     assert (len(result.ties), result.others) == ((1, 0) if counts else (0, 1))
+
+
+@pytest.mark.parametrize("twin", ["actuation:offset", "load:offset"])
+def test_an_exact_twin_of_what_is_missing_is_right(twin: str, tmp_path: Path) -> None:
+    """The bias is close to the offset in the first logs, and the new ones are to tell it."""
+    names = {"a:b": twin, "c:d": "sensor.joint_angle:bias"}
+    truth = 'effects = ["load:offset"]\naccept = ["actuation:offset", "sensor.joint_angle:bias"]'
+    new = report({"actuation:offset": 0.45, "load:offset": 0.45}, ["actuation:offset", "load:offset"])
+    where = written(tmp_path, {"case-001": new}, {"case-001": truth})
+    path = where[1] / "case-001" / REPORT
+    text = path.read_text(encoding="utf-8")
+    for old, name in names.items():
+        text = text.replace(f'"{old}"', f'"{name}"')
+    path.write_text(text, encoding="utf-8")
+    (where[1] / VERDICTS).write_text(
+        json.dumps({"reports": {"case-001": {"verdict": "effect", "sha256": sha256(path)}}}), encoding="utf-8"
+    )
+    result = settled(*where)
+    assert list(result.ties["right"]) == [twin]
+    assert list(result.ties["outcome"]) == ["settled"]
 
 
 def test_a_case_without_a_new_report_is_open(tmp_path: Path) -> None:

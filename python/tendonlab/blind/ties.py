@@ -15,6 +15,7 @@ from tendonlab.report.diagnosis import plain
 
 from .runner import VERDICTS
 from .scoring import SURE, report_of, tied, truth_of
+from .systems import SYSTEMS
 
 DECIDES = 10.0  # nats that the proposed experiment must promise
 FAILED = {"verdict": "failed"}
@@ -102,7 +103,7 @@ def settled(sealed: Path | str, before: Path | str, after: Path | str) -> Settle
         if tie is None:
             continue
         truth = truth_of(sealed, case)
-        right = tie.effects & set(truth["effects"]) or tie.effects & set(truth.get("accept", []))
+        right = tie.effects & _right(truth)
         if len(right) != 1:
             others += 1
             continue
@@ -113,6 +114,12 @@ def settled(sealed: Path | str, before: Path | str, after: Path | str) -> Settle
         raise ValueError(f"{before}: expected reports with a tie on the cases of {after}, found none")
     columns = ("case", "system", "effects", "right", "promised", "outcome", "probability")
     return Settlement(ties=pd.DataFrame(rows, columns=columns).set_index("case"), others=others)
+
+
+def _right(truth: Mapping[str, Any]) -> set[str]:
+    """The missing effects and their exact twins. What is close to them in the first logs alone is wrong."""
+    twins = {twin for name in truth["effects"] for twin in SYSTEMS[truth["draw"]["system"]].twins(name, ())}
+    return {*truth["effects"], *(twins & set(truth.get("accept", [])))}
 
 
 def _row(tie: Tie, right: frozenset[str], report: Mapping[str, Any]) -> dict[str, object]:
