@@ -45,7 +45,8 @@ def reports(folder: Path, name: str, *, gain: float = 40.0, column: str = "ql") 
     """A report on one case that advises a motion."""
     (folder / name).mkdir(parents=True)
     motion = {"separates": ["a:b", "c:d"], "expected_gain": gain, "reference": "next-1.csv"}
-    words = {"effects": [], "next_experiments": [motion | {"add": {"gravity_torque": 0.5}}]}
+    effects = [{"element": name[0], "effect": name[2], "probability": 0.4} for name in motion["separates"]]
+    words = {"effects": effects, "next_experiments": [motion | {"add": {"gravity_torque": 0.5}}]}
     (folder / name / "report.json").write_text(json.dumps(words))
     pd.DataFrame({"t": TIME, column: PATH}).to_csv(folder / name / "next-1.csv", index=False)
     return folder

@@ -44,6 +44,7 @@ def test_two_open_effects_that_an_experiment_separates_are_a_tie(given: dict[str
     [
         report({"a:b": 0.9, "c:d": 0.05}),  # decided
         report({"a:b": 0.45, "e:f": 0.45, "c:d": 0.05}, ["a:b", "e:f"]),  # a:b or its twin, but not c:d
+        report({"a:b": 0.5, "c:d": 0.001}),  # something unknown is there, but c:d is not
         report({"a:b": 0.6, "c:d": 0.3}, proposed={"expected_gain": 9.0}),
         report({"a:b": 0.6, "c:d": 0.3}, proposed={"separates": ["a:b"]}),  # an effect or nothing
         report({"a:b": 0.6, "c:d": 0.3}, proposed={"separates": ["joint_position", "time"]}),
@@ -130,6 +131,8 @@ def test_an_exact_twin_of_what_is_missing_is_right(twin: str, tmp_path: Path) ->
     text = path.read_text(encoding="utf-8")
     for old, name in names.items():
         text = text.replace(f'"{old}"', f'"{name}"')
+        parts = [f'"element": "{one[0]}", "effect": "{one[2]}"' for one in (old.partition(":"), name.partition(":"))]
+        text = text.replace(*parts)
     path.write_text(text, encoding="utf-8")
     (where[1] / VERDICTS).write_text(
         json.dumps({"reports": {"case-001": {"verdict": "effect", "sha256": sha256(path)}}}), encoding="utf-8"

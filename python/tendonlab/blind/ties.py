@@ -18,6 +18,7 @@ from .scoring import SURE, report_of, tied, truth_of
 from .systems import SYSTEMS
 
 DECIDES = 10.0  # nats that the proposed experiment must promise
+OPEN = 0.02  # probability of an effect from which it may be the right one
 FAILED = {"verdict": "failed"}
 OUTCOMES = ("settled", "open", "wrong")
 
@@ -33,7 +34,8 @@ class Tie(NamedTuple):
 
 def tie_of(report: Mapping[str, Any]) -> Tie | None:
     """The tie that the first proposed experiment with a reference can settle. None where it separates no two effects,
-    promises less than `DECIDES`, or where the report has decided between them already."""
+    promises less than `DECIDES`, or where the report has decided between them already: it is sure of one, or one is
+    less probable than `OPEN`."""
     proposed = next((entry for entry in report.get("next_experiments", []) if entry.get("reference")), None)
     if proposed is None:
         return None
@@ -41,19 +43,26 @@ def tie_of(report: Mapping[str, Any]) -> Tie | None:
     separates = len(effects) > 1 and all(":" in name for name in effects)  # else what an unknown cause follows
     if not separates or promised < DECIDES or decided(report, effects):
         return None
+    if min(_probabilities(report).get(name, 0.0) for name in effects) < OPEN:
+        return None
     return Tie(effects, promised, proposed)
 
 
 def decided(report: Mapping[str, Any], effects: frozenset[str]) -> set[str]:
     """Those of the effects that a report is sure of: more probable than `SURE`, together with what the data cannot tell
     from them, none of which is another one of these effects."""
-    each = {f"{entry['element']}:{entry['effect']}": float(entry["probability"]) for entry in report.get("effects", [])}
+    each = _probabilities(report)
     groups = {name: {name, *tied(report, name)} for name in effects}
     return {
         name
         for name, group in groups.items()
         if group & effects == {name} and sum(each.get(one, 0.0) for one in group) > SURE
     }
+
+
+def _probabilities(report: Mapping[str, Any]) -> dict[str, float]:
+    """Of each effect."""
+    return {f"{entry['element']}:{entry['effect']}": float(entry["probability"]) for entry in report.get("effects", [])}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,13 +133,12 @@ def _right(truth: Mapping[str, Any]) -> set[str]:
 
 def _row(tie: Tie, right: frozenset[str], report: Mapping[str, Any]) -> dict[str, object]:
     sure = decided(report, tie.effects)
-    named = (float(e["probability"]) for e in report["effects"] if f"{e['element']}:{e['effect']}" in right)
     return {
         "effects": ", ".join(sorted(tie.effects)),
         "right": ", ".join(right),
         "promised": tie.promised,
         "outcome": "settled" if sure == right else "wrong" if sure - right else "open",
-        "probability": next(named, 0.0),
+        "probability": max(_probabilities(report).get(name, 0.0) for name in right),
     }
 
 
