@@ -64,15 +64,20 @@ def test_the_first_experiment_with_a_reference_counts() -> None:
     assert tie.effects == {"a:b", "c:d"}
 
 
-def written(folder: Path, reports: dict[str, dict[str, Any]], truths: dict[str, str]) -> tuple[Path, Path, Path]:
-    """Truths, reports with a tie on every case, and the new `reports`."""
+TIED = report({"a:b": 0.5, "c:d": 0.4}, ["a:b", "c:d"])
+
+
+def written(
+    folder: Path, reports: dict[str, dict[str, Any]], truths: dict[str, str], first: dict[str, Any] = TIED
+) -> tuple[Path, Path, Path]:
+    """Truths, the `first` report with a tie on every case, and the new `reports`."""
     sealed, before, after = folder / "truth", folder / "before", folder / "after"
     sealed.mkdir(parents=True)
     for name, effects in truths.items():
-        text = f'format = "tendonlab-sealed/1"\nverdict = "effect"\n{effects}\n[draw]\nsystem = "rigid_joint"\n'
+        drawn = '[draw]\nsystem = "rigid_joint"\nis_documented_form = false'
+        text = f'format = "tendonlab-sealed/1"\nverdict = "effect"\n{effects}\n{drawn}\n'
         (sealed / f"{name}.toml").write_text(text, encoding="utf-8")
-    tied = report({"a:b": 0.5, "c:d": 0.4}, ["a:b", "c:d"])
-    for where, told in ((before, dict.fromkeys(truths, tied)), (after, reports)):
+    for where, told in ((before, dict.fromkeys(truths, first)), (after, reports)):
         verdicts = {}
         for name, words in told.items():
             (where / name).mkdir(parents=True)
@@ -91,7 +96,11 @@ def counted(folder: Path, new: dict[str, Any], truth: str = 'effects = ["a:b"]')
     [
         (report({"a:b": 0.95, "c:d": 0.02}), "settled"),
         (report({"a:b": 0.45, "e:f": 0.45, "c:d": 0.02}, ["a:b", "e:f"]), "settled"),  # from c:d, not from its twin
-        (report({"a:b": 0.7, "c:d": 0.2}), "open"),
+        (report({"a:b": 0.7, "c:d": 0.2}), "settled"),  # established: the group is gone, and a:b selected
+        (report({"a:b": 0.45}) | {"verdict": "unknown_effect"}, "settled"),  # in another form than the library's
+        (report({"a:b": 0.7, "c:d": 0.2}) | {"selected": []}, "open"),
+        (report({"a:b": 0.7, "c:d": 0.2}) | {"selected": ["a:b", "c:d"]}, "open"),
+        (report({"a:b": 0.7, "c:d": 0.2}, ["a:b", "c:d"]), "open"),
         (report({"a:b": 0.9, "c:d": 0.9}, ["a:b", "c:d"]), "open"),
         (report({"a:b": 0.9, "c:d": 0.9}), "wrong"),  # the right one, and one that is not there
         (report({"c:d": 0.95, "a:b": 0.01}), "wrong"),
@@ -142,6 +151,14 @@ def test_an_exact_twin_of_what_is_missing_is_right(twin: str, tmp_path: Path) ->
     assert list(result.ties["outcome"]) == ["settled"]
 
 
+def test_what_was_established_before_asks_for_more(tmp_path: Path) -> None:
+    """The tie of two effects that are no group: the first report had selected the right one already."""
+    first, truths = report({"a:b": 0.7, "c:d": 0.2}), {"case-001": 'effects = ["a:b"]'}
+    for p, outcome in ((0.75, "open"), (0.85, "settled")):
+        sealed, before, after = written(tmp_path / outcome, {"case-001": report({"a:b": p, "c:d": 0.1})}, truths, first)
+        assert list(settled(sealed, before, after).ties["outcome"]) == [outcome]
+
+
 def test_a_case_without_a_new_report_is_open(tmp_path: Path) -> None:
     truths = {"case-001": 'effects = ["a:b"]'}
     sealed, before, after = written(tmp_path, {"case-001": report({"a:b": 0.95})}, truths)
@@ -159,7 +176,7 @@ def test_the_command_prints_the_share_with_an_interval(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     truths = {f"case-00{i}": 'effects = ["a:b"]' for i in (1, 2, 3, 4)}
-    sure, still = report({"a:b": 0.95}), report({"a:b": 0.5, "c:d": 0.4})
+    sure, still = report({"a:b": 0.95}), TIED
     where = written(tmp_path, dict(zip(truths, (sure, sure, sure, still), strict=True)), truths)
     out = tmp_path / "ties.json"
     monkeypatch.setattr("sys.argv", ["blind", "settled", *map(str, where), "--json", str(out)])

@@ -80,7 +80,7 @@ def score(sealed: Path | str, reports: Path | str) -> Score:
     rows = []
     for name in cases_of(sealed, told):
         truth, verdict = truth_of(sealed, name), told.get(name, {"verdict": "failed"})
-        rows.append({"case": name, **_facts(truth), **_compare(truth, report_of(reports, name, verdict))})
+        rows.append({"case": name, **_facts(truth), **compared(truth, report_of(reports, name, verdict))})
     if not rows:
         raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
     return _tables(pd.DataFrame(rows).set_index("case"))
@@ -120,7 +120,8 @@ def _facts(truth: Mapping[str, Any]) -> dict[str, object]:
     return {"effect": ",".join(truth["effects"]), "truth": truth["verdict"]} | drawn
 
 
-def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+def compared(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+    """One row of the cases: what a report says beside the truth."""
     ranked = sorted(report.get("effects", []), key=lambda entry: -float(entry["probability"]))
     names = [f"{entry['element']}:{entry['effect']}" for entry in ranked]
     selected, failed = list(report.get("selected", [])), report["verdict"] == "failed"

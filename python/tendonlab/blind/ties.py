@@ -14,7 +14,7 @@ from tendonlab.rehearsal.curve import clopper_pearson
 from tendonlab.report.diagnosis import plain
 
 from .runner import VERDICTS
-from .scoring import SURE, report_of, tied, truth_of
+from .scoring import SURE, compared, report_of, tied, truth_of
 from .systems import SYSTEMS
 
 DECIDES = 10.0  # nats that the proposed experiment must promise
@@ -68,8 +68,8 @@ def _probabilities(report: Mapping[str, Any]) -> dict[str, float]:
 @dataclass(frozen=True, kw_only=True)
 class Settlement:
     """`ties`: one row per tie of which one effect is right; `outcome`: "settled" where the new report is sure of this
-    one alone, "wrong" where it is sure of another one, else "open". `others`: number of ties without a right effect, or
-    with nothing but right ones."""
+    one alone, or establishes it, apart from the others, and the first one did not; "wrong" where it is sure of another
+    one; else "open". `others`: number of ties without a right effect, or with nothing but right ones."""
 
     ties: pd.DataFrame
     others: int
@@ -108,37 +108,42 @@ def settled(sealed: Path | str, before: Path | str, after: Path | str) -> Settle
     told, new = _verdicts(before), _verdicts(after)
     rows, others = [], 0
     for case in sorted(new):
-        tie = tie_of(report_of(before, case, told.get(case, FAILED)))
+        first, report = report_of(before, case, told.get(case, FAILED)), report_of(after, case, new[case])
+        tie = tie_of(first)
         if tie is None:
             continue
         truth = truth_of(sealed, case)
-        right = tie.effects & _right(truth)
-        if len(right) != 1:
+        truth = {**truth, "accept": _twins(truth)}
+        if len(tie.effects & {*truth["effects"], *truth["accept"]}) == 1:
+            rows.append({"case": case, "system": truth["draw"]["system"], **_row(tie, truth, first, report)})
+        else:
             others += 1
-            continue
-        rows.append(
-            {"case": case, "system": truth["draw"]["system"], **_row(tie, right, report_of(after, case, new[case]))}
-        )
     if not rows and not others:
         raise ValueError(f"{before}: expected reports with a tie on the cases of {after}, found none")
     columns = ("case", "system", "effects", "right", "promised", "outcome", "probability")
     return Settlement(ties=pd.DataFrame(rows, columns=columns).set_index("case"), others=others)
 
 
-def _right(truth: Mapping[str, Any]) -> set[str]:
-    """The missing effects and their exact twins. What is close to them in the first logs alone is wrong."""
+def _twins(truth: Mapping[str, Any]) -> list[str]:
+    """Exact twins of the missing effects. What is close to them in the first logs alone is wrong."""
     twins = {twin for name in truth["effects"] for twin in SYSTEMS[truth["draw"]["system"]].twins(name, ())}
-    return {*truth["effects"], *(twins & set(truth.get("accept", [])))}
+    return sorted(twins & set(truth.get("accept", [])))
 
 
-def _row(tie: Tie, right: frozenset[str], report: Mapping[str, Any]) -> dict[str, object]:
-    sure = decided(report, tie.effects)
+def _row(tie: Tie, truth: Mapping[str, Any], first: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+    (name,) = tie.effects & {*truth["effects"], *truth["accept"]}
+    sure, wrong = decided(report, tie.effects), tie.effects - {name}
+
+    def is_established(told: Mapping[str, Any]) -> bool:
+        return bool(compared(truth, told).get("established")) and not tied(told, name) & wrong
+
+    is_settled = sure == {name} or (not sure and is_established(report) and not is_established(first))
     return {
         "effects": ", ".join(sorted(tie.effects)),
-        "right": ", ".join(right),
+        "right": name,
         "promised": tie.promised,
-        "outcome": "settled" if sure == right else "wrong" if sure - right else "open",
-        "probability": max(_probabilities(report).get(name, 0.0) for name in right),
+        "outcome": "settled" if is_settled else "wrong" if sure & wrong else "open",
+        "probability": _probabilities(report).get(name, 0.0),
     }
 
 
