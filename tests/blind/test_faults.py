@@ -13,7 +13,7 @@ import pytest
 from tendonlab.blind import draw
 from tendonlab.blind.faults import Fault, draw_fault, spoiled
 from tendonlab.blind.rig import Rig, draw_rig
-from tendonlab.blind.scoring import _compare
+from tendonlab.blind.scoring import compared
 from tendonlab.blind.systems import SYSTEMS, TWO_INERTIA
 
 TIME = 0.01 * np.arange(100)
@@ -102,12 +102,12 @@ TRUTH = {
 )
 def test_a_mistake_is_found_by_its_kind(problem: str, signal: str, blocks: bool, expected: tuple[bool, bool]) -> None:
     entry = {"problem": problem, "signal": signal, "experiment": None, "blocks": blocks}
-    found = _compare(TRUTH, {"verdict": "data_fault", "effects": [], "data": [entry]})
+    found = compared(TRUTH, {"verdict": "data_fault", "effects": [], "data": [entry]})
     assert (found["fault_kind"], found["fault_signal"]) == expected
 
 
 def test_right_logs_that_are_refused_are_counted() -> None:
     truth = {"effects": [], "verdict": "no_gap"}
-    assert _compare(truth, {"verdict": "data_fault", "effects": []})["blocked"]
-    assert not _compare(truth, {"verdict": "no_gap", "effects": []})["blocked"]
-    assert _compare(truth, {"verdict": "failed", "effects": []})["blocked"]
+    assert compared(truth, {"verdict": "data_fault", "effects": []})["blocked"]
+    assert not compared(truth, {"verdict": "no_gap", "effects": []})["blocked"]
+    assert compared(truth, {"verdict": "failed", "effects": []})["blocked"]

@@ -14,7 +14,7 @@ from tendonlab.blind import draw
 from tendonlab.blind.pairs import paired
 from tendonlab.blind.planning import plan
 from tendonlab.blind.rig import draw_rig, full_truth, nominal_effects, nominal_parameters
-from tendonlab.blind.scoring import _compare
+from tendonlab.blind.scoring import compared
 from tendonlab.blind.systems import RIGID_JOINT
 
 
@@ -83,5 +83,5 @@ def test_parameters_of_a_pair_are_those_of_both() -> None:
 )
 def test_a_pair_is_found_whole_or_in_part(selected: list[str], verdict: str, expected: tuple[bool, bool, bool]) -> None:
     report = {"verdict": verdict, "selected": selected, "effects": []}
-    found = _compare({"effects": ["a:b", "c:d"], "verdict": "effect"}, report)
+    found = compared({"effects": ["a:b", "c:d"], "verdict": "effect"}, report)
     assert tuple(found[name] for name in ("pair_both", "pair_one", "pair_wrong")) == expected

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tendonlab.blind.runner import REPORT, VERDICTS
-from tendonlab.blind.scoring import Score, _compare, score
+from tendonlab.blind.scoring import Score, compared, score
 
 TRUTH = {"effects": ["joint:stribeck"], "accept": ["motor:stribeck"], "verdict": "effect"}
 
@@ -45,7 +45,7 @@ def report(*ranked: str, verdict: str = "effect", selected: tuple[str, ...] = ()
     ],
 )
 def test_an_effect_is_right_in_six_ways(given: dict[str, Any], hits: tuple[bool, ...]) -> None:
-    found = _compare(TRUTH, given)
+    found = compared(TRUTH, given)
     names = ("top1", "ranked_first", "top3", "class_hit", "element_hit", "verdict_hit")
     assert tuple(found[name] for name in names) == hits
     assert "false_alarm" not in found
@@ -65,22 +65,22 @@ def test_an_effect_is_right_in_six_ways(given: dict[str, Any], hits: tuple[bool,
     ],
 )
 def test_where_nothing_is_missing_an_effect_is_a_false_alarm(given: dict[str, Any], alarm: bool) -> None:
-    assert _compare({"effects": [], "verdict": "no_gap"}, given)["false_alarm"] == alarm
+    assert compared({"effects": [], "verdict": "no_gap"}, given)["false_alarm"] == alarm
 
 
 def test_first_probability_shrinkage_and_seconds_are_those_of_the_report() -> None:
     shrunk = {"shrinkage": {"from_refitted": {"value": 0.9}}, "seconds": 12.0}
-    found = _compare(TRUTH, report("x:y", "z:w", selected=("x:y", "z:w"), **shrunk))
+    found = compared(TRUTH, report("x:y", "z:w", selected=("x:y", "z:w"), **shrunk))
     assert (found["first"], found["probability"], found["selected"]) == ("x:y", 0.8, "x:y,z:w")
     assert (found["shrinkage"], found["seconds"]) == (0.9, 12.0)
-    assert np.isnan(_compare(TRUTH, report("x:y"))["shrinkage"])  # type: ignore[call-overload]
-    assert _compare(TRUTH, report(verdict="failed"))["shrinkage"] == 0.0
+    assert np.isnan(compared(TRUTH, report("x:y"))["shrinkage"])  # type: ignore[call-overload]
+    assert compared(TRUTH, report(verdict="failed"))["shrinkage"] == 0.0
 
 
 def test_the_probability_of_the_truth_is_that_of_the_effect_and_its_twin() -> None:
-    assert _compare(TRUTH, report("joint:stribeck", "a:b", "motor:stribeck"))["true_probability"] == 0.8 + 0.2
-    assert _compare(TRUTH, report("a:b"))["true_probability"] == 0.0
-    assert _compare(TRUTH, report(verdict="failed"))["true_probability"] == 0.0
+    assert compared(TRUTH, report("joint:stribeck", "a:b", "motor:stribeck"))["true_probability"] == 0.8 + 0.2
+    assert compared(TRUTH, report("a:b"))["true_probability"] == 0.0
+    assert compared(TRUTH, report(verdict="failed"))["true_probability"] == 0.0
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_intervals_of_a_selected_true_effect_cover_or_not(
         "shape": {"value": 2.0, "ci95": None},
     }
     values = {"joint_static_excess": 0.11, "static_excess": 9.0, "stribeck_velocity": 0.04, "shape": 2.0}
-    found = _compare({**TRUTH, "draw": draw, "truth": values}, given)["covered"]
+    found = compared({**TRUTH, "draw": draw, "truth": values}, given)["covered"]
     np.testing.assert_equal(found, covered)
 
 

@@ -1,4 +1,4 @@
-"""`tendonlab blind draw|run|follow|score|tell|results|calibrate|campaign`: the blind protocol on the command line."""
+"""`tendonlab blind draw|run|follow|settled|score|...`: the blind protocol on the command line."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
 
     parser.set_defaults(run=explain)
     verbs = parser.add_subparsers(
-        dest="verb", metavar="draw|run|follow|score|tell|results|calibrate|campaign|rehearse|compare"
+        dest="verb", metavar="draw|run|follow|settled|score|tell|results|calibrate|campaign|rehearse|compare"
     )
 
     drawing = _verb(verbs, "draw", _draw, "draw cases into OUT/cases, their truth apart from them")
@@ -44,7 +44,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     following.add_argument("reports", type=Path, metavar="REPORTS", help="what `run` wrote of these cases")
     following.add_argument("out", type=Path, metavar="OUT")
     following.add_argument("--sealed", type=Path, required=True, help="new folder of the truth, outside OUT")
-    text = "the motion that the report puts first (default), or a random one of the same length"
+    text = "the experiment that the report puts first (default), or a random one of the same length"
     following.add_argument("--choice", choices=("advised", "random"), default="advised", help=text)
     _add_drawn(following)
 
@@ -59,6 +59,7 @@ def _add_verbs(parser: argparse.ArgumentParser) -> None:
     scoring.add_argument("reports", type=Path, metavar="REPORTS")
     scoring.add_argument("--csv", type=Path, help="write one row per case here")
     scoring.add_argument("--json", type=Path, help="write summary and cases here")
+    _add_settled(verbs)
     _add_tell(verbs)
     _add_results(verbs)
     _add_calibrate(verbs)
@@ -70,6 +71,15 @@ def _add_pace(parser: argparse.ArgumentParser) -> None:
     text = "time limit of one diagnosis; a case that exceeds the limit counts as failed (default 1800)"
     parser.add_argument("--timeout", type=float, default=1800.0, metavar="SECONDS", help=text)
     parser.add_argument("--jobs", type=int, default=1, help="cases at a time (default 1)")
+
+
+def _add_settled(verbs: Any) -> None:
+    text = "open the truth and count the ties that the experiments of `follow` settle"
+    parser = _verb(verbs, "settled", _settled, text)
+    parser.add_argument("sealed", type=Path, metavar="SEALED")
+    parser.add_argument("before", type=Path, metavar="BEFORE", help="reports that `follow` was given")
+    parser.add_argument("after", type=Path, metavar="AFTER", help="what `run` wrote of the cases that `follow` drew")
+    parser.add_argument("--json", type=Path, help="write counts and ties here; keep them with the truth")
 
 
 def _add_tell(verbs: Any) -> None:
@@ -106,6 +116,10 @@ def _add_shares(drawing: argparse.ArgumentParser) -> None:
     drawing.add_argument("--faults", type=float, metavar="SHARE", help=text)
     text = "share of the effects in another form than the library's (default: half of those that have another one)"
     drawing.add_argument("--other-form", type=float, metavar="SHARE", help=text)
+    text = "missing effects, as far as the kinds of rigs have them; every rig without unknown cause then lacks one"
+    drawing.add_argument("--effects", nargs="+", metavar="EFFECT", help=text)
+    text = "rich or poor (default: rich twice as often as poor)"
+    drawing.add_argument("--excitation", metavar="KIND", help=text)
     ends = ("LEAST", "LARGEST")
     text = "least and largest gap/noise of an effect (default 1 6)"
     drawing.add_argument("--strengths", type=float, nargs=2, metavar=ends, help=text)
@@ -227,8 +241,11 @@ def _drawn(given: argparse.Namespace) -> dict[str, Any]:
 
 def _shares(given: argparse.Namespace) -> dict[str, Any]:
     """The options of `_add_shares` that were given."""
-    names = ("system", "repeats", "unknown_share", "pairs", "faults", "other_form", "strengths", "second")
+    shares = ("repeats", "unknown_share", "pairs", "faults", "other_form")
+    names = ("system", *shares, "effects", "excitation", "strengths", "second")
     chosen = {name: getattr(given, name) for name in names if getattr(given, name) is not None}
+    if "effects" in chosen:
+        chosen |= {"effect_share": 1.0, "nothing_share": 0.0}
     return {name: tuple(x) if isinstance(x, list) else x for name, x in chosen.items()}
 
 
@@ -253,6 +270,16 @@ def _score(given: argparse.Namespace) -> int:
     print(result)
     if given.csv:
         result.cases.to_csv(given.csv)
+    if given.json:
+        given.json.write_text(json.dumps(result.to_dict(), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return 0
+
+
+def _settled(given: argparse.Namespace) -> int:
+    from .ties import settled
+
+    result = settled(given.sealed, given.before, given.after)
+    print(result)
     if given.json:
         given.json.write_text(json.dumps(result.to_dict(), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     return 0

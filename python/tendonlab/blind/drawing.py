@@ -179,6 +179,7 @@ def _rig(index: int, wanted: Wanted, *, seed: int, tries: int, num_samples: int 
         effect=effect,
         kind=wanted.kind,
         system=system,
+        excitation=wanted.excitation,
         num_samples=num_samples,
         has_repeats=wanted.has_repeats,
         strengths=wanted.strengths,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import unknown
+from .excitation import PLANS
 from .rig import MET_WITHIN, forms_of
 from .strength import TOLERANCE
 from .systems import SYSTEMS
@@ -33,6 +34,8 @@ class Options:
     `other_form`: share of the single effects, and of the pairs, in another form than the library's, as far as effects
     have one; None: half of those that have one, each by its own draw.
 
+    `effects`: those that are drawn, () for all of the kind of rig. `excitation`: "rich" or "poor", None for both.
+
     A rig is drawn again until the logarithm of its gap/noise is as wanted, within `met_within`; after `tries` rigs
     another effect takes the place.
     """
@@ -52,6 +55,8 @@ class Options:
     weak: tuple[float, float] = (0.5, 5.0)
     tries: int = 3
     met_within: float = MET_WITHIN
+    effects: tuple[str, ...] = ()
+    excitation: str | None = None
 
     def __post_init__(self) -> None:
         """Raise ValueError if a share is not from 0 to 1, if strengths are no range, and for another system."""
@@ -68,6 +73,12 @@ class Options:
                 raise ValueError(f"{name} = {least}, {largest}: expected two numbers, 0 < least < largest")
         if self.system not in (*SYSTEMS, MIXED):
             raise ValueError(f"system = {self.system!r}: expected one of {', '.join((*SYSTEMS, MIXED))}")
+        for kind in self.kinds:
+            known = SYSTEMS[kind].effects
+            if self.effects and not set(self.effects) & set(known):
+                raise ValueError(f"effects = {', '.join(self.effects)}: expected some of a {kind}, {', '.join(known)}")
+        if self.excitation not in (None, *PLANS):
+            raise ValueError(f"excitation = {self.excitation!r}: expected one of {', '.join(PLANS)}")
         if self.tries < 1:
             raise ValueError(f"tries = {self.tries}: expected at least 1")
         if not TOLERANCE < self.met_within < np.inf:
@@ -84,7 +95,8 @@ class Wanted:
     """A case to draw: its system, kind, the effect that its simulator lacks ("" for none, "unknown:bump" for a cause
     that the library lacks as well), whether it repeats an experiment, whether it lacks a second effect, and whether
     its logs have a mistake; ranges of the gap/noise of its effect and of the second one. `is_other_form`: whether the
-    effect has another form than the library's, None where the rig draws that. `tries`, `met_within`: see `Options`.
+    effect has another form than the library's, None where the rig draws that. `excitation`, `tries`, `met_within`: see
+    `Options`.
     """
 
     system: str
@@ -98,6 +110,7 @@ class Wanted:
     is_other_form: bool | None = None
     tries: int = 3
     met_within: float = MET_WITHIN
+    excitation: str | None = None
 
 
 def plan(seed: int, count: int, **options: Any) -> list[Wanted]:
@@ -128,6 +141,7 @@ def plan(seed: int, count: int, **options: Any) -> list[Wanted]:
             is_other_form=None if of.other_form is None else i in other,
             tries=of.tries,
             met_within=of.met_within,
+            excitation=of.excitation,
         )
         for i, (name, kind, effect) in enumerate(drawn)
     ]
@@ -167,7 +181,8 @@ def _kinds(seed: int, count: int, *, system: str, of: Options) -> list[tuple[str
     known = count - num_unknown
     singles = min(known, max(1 if of.effect_share else 0, round(of.effect_share * known)))
     none = min(known - singles, round(of.nothing_share * known))
-    kinds = [("effect", effect) for effect in _in_turn(SYSTEMS[system].effects, singles, draw)] + [("none", "")] * none
+    drawn = [effect for effect in SYSTEMS[system].effects if effect in (of.effects or SYSTEMS[system].effects)]
+    kinds = [("effect", effect) for effect in _in_turn(drawn, singles, draw)] + [("none", "")] * none
     kinds += [("parameters_only", "")] * (known - len(kinds))
     kinds += [("unknown", cause) for cause in _in_turn(unknown.named(SYSTEMS[system].causes), num_unknown, draw)]
     return [(system, *kinds[i]) for i in draw.permutation(count)]

@@ -148,6 +148,7 @@ TYPES: dict[str, tuple[str, Callable[[Any], bool]]] = {  # of the fields of `Opt
     "str": ("a text", lambda x: isinstance(x, str)),
     "int": ("a whole number", _is_whole),
     "float": ("a number", _is_number),
+    "tuple[str, ...]": ("a list of texts", lambda x: isinstance(x, list) and all(isinstance(one, str) for one in x)),
     "tuple[float, float]": ("two numbers", _are_two),
 }
 

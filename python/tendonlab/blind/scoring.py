@@ -80,7 +80,7 @@ def score(sealed: Path | str, reports: Path | str) -> Score:
     rows = []
     for name in cases_of(sealed, told):
         truth, verdict = truth_of(sealed, name), told.get(name, {"verdict": "failed"})
-        rows.append({"case": name, **_facts(truth), **_compare(truth, report_of(reports, name, verdict))})
+        rows.append({"case": name, **_facts(truth), **compared(truth, report_of(reports, name, verdict))})
     if not rows:
         raise ValueError(f"{reports / VERDICTS} lists no report: expected at least one")
     return _tables(pd.DataFrame(rows).set_index("case"))
@@ -120,7 +120,8 @@ def _facts(truth: Mapping[str, Any]) -> dict[str, object]:
     return {"effect": ",".join(truth["effects"]), "truth": truth["verdict"]} | drawn
 
 
-def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+def compared(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, object]:
+    """One row of the cases: what a report says beside the truth."""
     ranked = sorted(report.get("effects", []), key=lambda entry: -float(entry["probability"]))
     names = [f"{entry['element']}:{entry['effect']}" for entry in ranked]
     selected, failed = list(report.get("selected", [])), report["verdict"] == "failed"
@@ -159,7 +160,7 @@ def _compare(truth: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, o
         "established": bool(selected) and right.issuperset(selected) and report["verdict"] in whole,
         "ranked_first": first in right,
         "ranked_share": _ranked_share(report, first, right),
-        "told_apart": first in right and names_it and not _tied(report, first) - right,
+        "told_apart": first in right and names_it and not tied(report, first) - right,
         "top3": bool(right & set(names[:3])),
         "class_hit": _part(first, 2) in {_part(name, 2) for name in right},
         "element_hit": _part(first, 0) in {_part(name, 0) for name in right},
@@ -189,14 +190,14 @@ def _fault(fault: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, obj
     return {"fault_kind": bool(kind), "fault_signal": bool(named & {*fault["signals"], *fault["experiments"]})}
 
 
-def _tied(report: Mapping[str, Any], effect: str) -> set[str]:
+def tied(report: Mapping[str, Any], effect: str) -> set[str]:
     """What the data cannot tell from an effect."""
     return {str(name) for group in report.get("indistinguishable", []) if effect in group for name in group}
 
 
 def _ranked_share(report: Mapping[str, Any], first: str, right: set[str]) -> float:
     """1 where the first effect is right; 1/size where the first one's group, of at most three, holds a right one."""
-    group = _tied(report, first)
+    group = tied(report, first)
     if first in right:
         return 1.0
     return 1.0 / len(group) if group & right and len(group) <= LARGEST_GROUP else 0.0

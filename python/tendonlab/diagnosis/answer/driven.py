@@ -204,10 +204,14 @@ class _Channel:
     def along(self, path: np.ndarray, slower: float) -> np.ndarray:
         """The input that follows a path, led there from its start, so many times slower."""
         led = self._to(path)
-        return np.asarray(led(instants(), 1) / slower if self.row.dimension in SPEEDS else led(instants()))
+        if self.row.dimension not in SPEEDS:
+            return np.asarray(led(instants()))
+        speed = np.asarray(led(instants(), 1) / slower)
+        speed[0] = 0.0  # what rounding leaves there would have a sense, and friction would start with it
+        return speed
 
     def _to(self, path: np.ndarray) -> CubicSpline:
-        return CubicSpline(instants(), _led(path, self.start, self.reach))
+        return CubicSpline(instants(), _led(path, self.start, self.reach), bc_type=((1, 0.0), "not-a-knot"))
 
 
 def _led(path: np.ndarray, start: float, reach: Reach) -> np.ndarray:

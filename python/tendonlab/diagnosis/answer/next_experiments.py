@@ -90,7 +90,8 @@ def _separation(case: Case, floor: Floor, first: Fitted, second: Fitted, plan: P
 
 def _gain(case: Case, floor: Floor, true: Fitted, other: Fitted, experiment: Experiment) -> float:
     """Nats that the diagnosis is expected to count against the `other` where `true` made the log: r is what the other
-    leaves more, with its posterior as the prior of its parameters. In free run a model makes its own log again."""
+    leaves more, with its posterior as the prior of its parameters. What the log begins with differs even from its own
+    model: a rig at rest does not show which way it came."""
     rig, under = case.playing(experiment), replace(floor, sd=other.levels.tolist())
 
     def run(of: Fitted) -> Run:
@@ -98,6 +99,6 @@ def _gain(case: Case, floor: Floor, true: Fitted, other: Fitted, experiment: Exp
 
     left = run(other)
     marginal = Marginal.of(left, other.shares)
-    more = left.residual if case.replay.kind == "free" else left.residual - run(true).residual
-    r, moving = marginal.residual(more), ~np.array(other.at_bound, dtype=bool)
-    return contradiction(r, marginal.jacobian[:, moving], other.precision[np.ix_(moving, moving)])
+    more = marginal.residual(left.residual - run(true).residual)
+    moving = ~np.array(other.at_bound, dtype=bool)
+    return contradiction(more, marginal.jacobian[:, moving], other.precision[np.ix_(moving, moving)])
