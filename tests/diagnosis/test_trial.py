@@ -8,7 +8,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.diagnosis.search.contest import _reliever
-from tendonlab.diagnosis.search.trial import Trial, has_shape, is_no_shape
+from tendonlab.diagnosis.search.trial import Trial, gain_elsewhere, has_shape, is_no_shape
 from tendonlab.simulation.catalog import LEVEL
 
 
@@ -84,3 +84,33 @@ def test_friction_that_the_model_has_elsewhere_needs_a_larger_share() -> None:
     assert needed("motor:stribeck", 1100.0, "joint:stribeck")
     assert needed("motor:asymmetry", 200.0, "joint:stribeck")
     assert needed("sensor.motor_angle:bias", 200.0, "sensor.joint_angle:bias")
+
+
+@pytest.mark.parametrize(
+    ("added", "heard", "gain"),
+    [
+        (("sensor.joint_velocity:delay",), "motor_angle", 30.0),  # of the other two outputs
+        (("sensor.joint_velocity:delay",), "joint_velocity", 0.0),  # an injection passes the error on
+        (("joint:stribeck",), "motor_angle", 0.0),
+        (("sensor.joint_velocity:delay", "joint:stribeck"), "motor_angle", 0.0),
+        ((), "motor_angle", 0.0),
+    ],
+)
+def test_what_an_error_of_one_sensor_leaves_shows_in_that_sensor(
+    added: tuple[str, ...], heard: str, gain: float
+) -> None:
+    outputs = [SimpleNamespace(name=name) for name in ("motor_angle", "joint_angle", "joint_velocity")]
+    run: Any = SimpleNamespace(output=np.array([0, 1, 2]), residual=np.array([6.0, 5.0, 9.0]))
+    better: Any = SimpleNamespace(output=run.output, residual=np.array([4.0, 1.0, 1.0]))
+    system = SimpleNamespace(info=SimpleNamespace(outputs=outputs))
+    base: Any = SimpleNamespace(added=added, system=system, shares=np.array([1.0, 5.0 / 3.0, 1.0]), runs=[run])
+    fitted: Any = SimpleNamespace(runs=[better])
+    assert gain_elsewhere(base, Trial("joint:stribeck", fitted, 60.0, 60.0, 0.0), heard=heard) == pytest.approx(gain)
+
+
+def test_a_weak_effect_may_show_where_a_strong_one_does_not() -> None:
+    base: Any = SimpleNamespace(mean_square=0.95, added=("sensor.joint_velocity:delay",))
+    fitted: Any = SimpleNamespace(mean_square=0.9)
+    trials = [Trial("joint:stribeck", fitted, 3000.0, 3000.0, 0.0)]
+    assert not is_no_shape(base, trials, 4e6, elsewhere=90.0)
+    assert is_no_shape(base, trials, 4e6, elsewhere=110.0)

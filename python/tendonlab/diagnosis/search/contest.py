@@ -18,6 +18,7 @@ from tendonlab.diagnosis.search.trial import (
     Trial,
     bar_for_further_effect,
     explains_enough,
+    gain_elsewhere,
     is_no_shape,
     plainest_first,
     removes_little,
@@ -175,8 +176,10 @@ def _worth_adding(
     is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and not is_little and _evidence_counts(fitter, base)
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
-    if repeated and further and not is_no_shape(base, trials, largest_gain):
-        return False
+    if repeated and further:
+        elsewhere = gain_elsewhere(base, trials[0], heard=fitter.case.replay.output)
+        if not is_no_shape(base, trials, largest_gain, elsewhere=elsewhere):
+            return False
     enough = repeated or explains_enough(base, trials)
     if not (enough or may_be_noise(fitter.case, first)):
         return False

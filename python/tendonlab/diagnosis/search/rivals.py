@@ -17,6 +17,7 @@ from tendonlab.diagnosis.search.trial import (
     FURTHER_SHARE,
     Trial,
     bar_for_further_effect,
+    gain_elsewhere,
     is_no_shape,
     plainest_first,
 )
@@ -136,7 +137,8 @@ def improve(
     bar, most = bar_for_further_effect(fitter), strongest.holder.evidence_gain
 
     def is_needed(place: Place) -> bool:
-        no_shape = not fitter.floor.repeated or is_no_shape(place.others, [place.holder], most)
+        elsewhere = gain_elsewhere(place.others, place.holder, heard=fitter.case.replay.output)
+        no_shape = not fitter.floor.repeated or is_no_shape(place.others, [place.holder], most, elsewhere=elsewhere)
         return bar.passed(place.holder) and no_shape and not place.holder.is_nothing
 
     needless = [place for place in contested if place is not strongest and not is_needed(place)]

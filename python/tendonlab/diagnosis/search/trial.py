@@ -158,16 +158,31 @@ def explains_enough(base: Fitted, trials: Sequence[Trial]) -> bool:
     return rest > 0.0 and left < rest * (1.0 - (ALONE_SHARE if alone else SHARE))
 
 
-def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float) -> bool:
+def gain_elsewhere(base: Fitted, trial: Trial, *, heard: str | None) -> float:
+    """Nats that the trial gains on outputs that no effect of `base` touches: the shape of a sensor's error shows in
+    that sensor alone, unless the loop hears it (`heard`: the output that it does). 0 where other effects were added."""
+    own = {name.split(":")[0].removeprefix("sensor.") for name in base.added if name.startswith("sensor.")}
+    if not base.added or len(own) < len({name.split(":")[0] for name in base.added}) or heard in own:
+        return 0.0
+    outputs = [output.name for output in base.system.info.outputs]
+    share = np.array([0.0 if name in own else count for name, count in zip(outputs, base.shares, strict=True)])
+    pairs = zip(base.runs, trial.fitted.runs, strict=True)
+    return 0.5 * float(sum(share[a.output] @ (a.residual**2 - b.residual**2) for a, b in pairs))
+
+
+def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float, *, elsewhere: float = 0.0) -> bool:
     """Whether, where repeats say what is noise, the first trial is more than the error of the shape of an effect that
-    was added before: either by its share of the `largest_gain` of those and of what is left, or because it tells
-    clearly and leaves little. Friction that falls with speed otherwise than the library's makes Stribeck friction of
-    the joint of that of the motor: a law that the model has elsewhere needs a larger share."""
+    was added before: by its share of the `largest_gain` of those and of what is left, or because it tells clearly and
+    leaves little, or tells clearly `elsewhere`, where none of those acts. Friction that falls with speed otherwise than
+    the library's makes Stribeck friction of the joint of that of the motor: a law that the model has elsewhere needs a
+    larger share."""
     gain = trials[0].evidence_gain
     matters = base.mean_square <= NEAR_FLOOR or not removes_little(base, trials[0])
     if _is_friction_elsewhere(base, trials[0]):
         return gain > SAME_LAW * largest_gain and matters
-    return (gain > HIDDEN and explains_enough(base, trials)) or (gain > FURTHER_SHARE * largest_gain and matters)
+    if matters and (gain > FURTHER_SHARE * largest_gain or elsewhere > HIDDEN):
+        return True
+    return gain > HIDDEN and explains_enough(base, trials)
 
 
 def _is_friction_elsewhere(base: Fitted, trial: Trial) -> bool:
