@@ -20,7 +20,8 @@ from tendonlab.errors import NumericalError
 
 def repeated(**more: Any) -> Any:
     """A fitter whose floor is from repeats: no model changes it."""
-    fitter = SimpleNamespace(floor=SimpleNamespace(repeated=True), case=SimpleNamespace(), **more)
+    case = SimpleNamespace(replay=SimpleNamespace(output="joint_angle"))
+    fitter = SimpleNamespace(floor=SimpleNamespace(repeated=True), case=case, **more)
     fitter.left_by = lambda model: fitter
     return fitter
 

@@ -14,6 +14,7 @@ from tendonlab.simulation.system import System
 
 CUTOFF = 60.0  # Hz, of a Butterworth filter of fourth order, forwards and backwards: it shifts no phase
 SETTLED = 6.0  # periods of the cutoff by which a record is lengthened at its ends
+HALF = 0.5  # of one amplitude, to see its column: forces are proportional, and a share keeps within its bounds
 TRIM = 0.1  # s at each end, where the filter starts and stops
 
 
@@ -125,14 +126,14 @@ def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray
     effect = system.info.effect(f"{p.element}:{p.effect}")
     own = {q: system.parameters[q] for q in effect.parameters}
     switched = {
-        system.info.parameter(q).own: 1.0 if q == name else 0.0 if system.info.parameter(q).amplitude else value
+        system.info.parameter(q).own: HALF if q == name else 0.0 if system.info.parameter(q).amplitude else value
         for q, value in own.items()
     }
     if (effect.group, effect.effect) == ("actuation", "offset"):
         return np.full_like(velocity, -_command_gain(system))
     if effect.group != "friction":
         return np.zeros_like(velocity)
-    return np.asarray(effect.law(**switched).force(velocity=velocity))
+    return np.asarray(effect.law(**switched).force(velocity=velocity)) / HALF
 
 
 def _command_gain(system: System) -> float:

@@ -137,9 +137,13 @@ def improve(
     bar, most = bar_for_further_effect(fitter), strongest.holder.evidence_gain
 
     def is_needed(place: Place) -> bool:
+        return bar.passed(place.holder) and not place.holder.is_nothing and is_no_error_of_a_shape(place)
+
+    def is_no_error_of_a_shape(place: Place) -> bool:
+        if not fitter.floor.repeated:
+            return True
         elsewhere = gain_elsewhere(place.others, place.holder, heard=fitter.case.replay.output)
-        no_shape = not fitter.floor.repeated or is_no_shape(place.others, [place.holder], most, elsewhere=elsewhere)
-        return bar.passed(place.holder) and no_shape and not place.holder.is_nothing
+        return is_no_shape(place.others, [place.holder], most, elsewhere=elsewhere)
 
     needless = [place for place in contested if place is not strongest and not is_needed(place)]
     if needless:
