@@ -16,6 +16,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter
 from tendonlab.fitting.thinning import thinned
+from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
 LEFT = 0.5  # share of what lies above the sensors' noise that straight lines may leave, to be believed
@@ -58,16 +59,20 @@ def straight_inputs(dataset: Dataset, search: Search, shop: Workshop) -> Straigh
     names = tuple(_held(dataset, system))
     if not names or dataset.controller is not None or system.info.sampled:
         return None
-    held = _under_white(search.fitter.case, search.final, shop)
+    held = _under_white(search.fitter.case, search.final, shop, solve=False)
     if held.mean_square < EXPLAINED:
         return None
     drawn = _straight(dataset, names)
     try:
         case = make_case(thinned(drawn, dataset.system()), search.fitter.case.system)
-        left = _under_white(case, search.final, shop).mean_square
+        left = _under_white(case, search.final, shop, solve=False)
+        if left.mean_square > held.mean_square:  # as the model is, which was fitted to held samples
+            return None
+        held, left = _under_white(search.fitter.case, held, shop), _under_white(case, left, shop)
     except NumericalError:
         return None
-    return Straight(drawn, left / held.mean_square, names) if left - 1.0 < LEFT * (held.mean_square - 1.0) else None
+    more, less = held.mean_square - 1.0, left.mean_square - 1.0
+    return Straight(drawn, left.mean_square / held.mean_square, names) if less < LEFT * more else None
 
 
 def _held(dataset: Dataset, system: System) -> Iterable[str]:
@@ -83,7 +88,12 @@ def _straight(dataset: Dataset, names: Iterable[str]) -> Dataset:
     return replace(dataset, signals=signals, experiments=runs)
 
 
-def _under_white(case: Case, model: Fitted, shop: Workshop) -> Fitted:
-    """The model fitted under the sensors' noise alone."""
-    fitter = Fitter(case, white(case.noise), shop.cancel)
-    return fitter.fit(model.system, added=model.added, max_iterations=ROUGH)
+def _under_white(case: Case, model: Fitted, shop: Workshop, *, solve: bool = True) -> Fitted:
+    """The model under the sensors' noise alone, fitted where asked to `solve`."""
+    fitter = Fitter(replace(case, scatter=()), white(case.noise), shop.cancel)
+    initial = [own[: len(ready.initial)] for own, ready in zip(model.initial, _training(case), strict=True)]
+    return fitter.fit(model.system, added=model.added, initial=initial, max_iterations=ROUGH, solve=solve)
+
+
+def _training(case: Case) -> list[Prepared]:
+    return [case.prepared[i] for i in case.train]
