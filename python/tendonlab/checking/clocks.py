@@ -23,6 +23,10 @@ ROUNDS = 3  # of common lag and scatter
 SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
 BEHIND = "a diagnosis treats this lag as the effect delay"
 AHEAD = "no delay explains this: either the inputs are stamped late, or the simulator lacks something that looks alike"
+LONG = 0.1  # s: no sensor or drive of a joint is later
+STRANGE = (
+    "so long a delay is rare: more likely the simulator lacks something that looks alike, as friction in slow motion"
+)
 UNKNOWN = 10.0  # s: a lag of which nothing is known
 
 
@@ -98,7 +102,7 @@ def _all_late(
         single = len(lags.channels) > 1 and not together
         what = " and ".join(lags.channels) if together else lags.channels[c]
         verb = _verb(seconds, not together or len(lags.channels) == 1)
-        meaning = BEHIND if seconds > 0 else AHEAD
+        meaning = AHEAD if seconds < 0 else BEHIND if seconds < LONG else STRANGE
         yield Finding(
             problem="clock",
             signal=lags.channels[c] if single else None,

@@ -53,7 +53,8 @@ def _scale_words(name: str, value: float, alternatives: Sequence[str], dataset: 
     also = f". {' or '.join(alternatives)} may be wrong instead" if alternatives else ""
     seen = f"{number(value)} times as large as the equation of motion allows{_hint(value)}"
     if name == TIME:
-        return f"the time is {seen}; check the unit of the time column{also}"
+        inertias = f"the inertias stated, which would be {number(value**-2)} times as large as they are"
+        return f"the time is {seen}; check the unit of the time column, or that of {inertias}{also}"
     spec = dataset.signals[name]
     gain = dataset.system().info.with_role("command_gain")
     scaled = spec.role == "input" and gain is not None and gain.name in dataset.parameters
