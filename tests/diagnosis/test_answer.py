@@ -36,14 +36,16 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     monkeypatch.setattr(answer, "strain", lambda case, model: 6.0)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
-    fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ()), train=range(5)))
+    run = SimpleNamespace(measured=np.array([np.tile([-0.4, 0.4], 10), np.full(20, np.nan), np.tile([-4.0, 4.0], 10)]))
+    fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ()), train=range(5), measured=[0, 2], prepared=[run]))
     final = SimpleNamespace(mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
     search: Any = SimpleNamespace(tuned=tuned, final=final, selected=("x",), fitter=fitter)
-    found = _levels(search, nominal, stages, stages, floor, None)
+    found = _levels(search, nominal, stages, stages, floor, None, judged=(0,))
     assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
     assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
     assert found.explained == pytest.approx(5.0 / 8.0)
     assert found.whitened == 1.04
+    assert not found.drowned  # one output moves by less than its floor, the other by more
     assert found.patterns == (0.25, 0.1, 6.0)
     assert (found.trained, found.scattered) == (1.0 if repeated else 10.0, 0.0)
     search.selected, search.final = (), tuned
@@ -54,8 +56,10 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     assert none.patterns == (0.25, 0.1, 6.0)
     assert (none.trained, none.scattered) == ((1.0, 0.0) if repeated else (20.0, 3.0))
     search.fitter.case.train = range(4)  # too few to tell what follows the motion where repeats say what is noise
-    few = _levels(search, nominal, stages, stages, floor, None)
+    run.measured *= 0.1
+    few = _levels(search, nominal, stages, stages, floor, None, judged=(0,))
     assert few.patterns == (Patterns() if repeated else (0.25, 0.1, 6.0))
+    assert few.drowned
 
 
 def test_the_gap_lists_floor_and_error_of_each_stage() -> None:

@@ -121,6 +121,15 @@ def test_a_simulator_without_any_error_has_no_gap(repeated: bool) -> None:
     assert decide((), (), levels).verdict == "no_gap"
 
 
+def test_noise_above_the_motion_of_every_output_speaks_for_no_verdict() -> None:
+    levels = Levels(nominal=0.5, tuned=0.1, refitted=0.1, explained=None, left=0.1, repeated=False)
+    assert decide((), (), levels).probability["no_gap"] > 0.8
+    found = decide((), (), replace(levels, drowned=True))
+    assert found.verdict == "no_gap"
+    assert found.probability["no_gap"] < 0.3
+    assert found.probability["data_fault"] == 0.0
+
+
 def test_where_runs_repeat_training_runs_decide_unless_held_out_ones_are_far() -> None:
     assert nothing_selected(refitted=0.9 * FAR_REPEATED, repeated=True, tuned=1.0).verdict == "parameters_only"
     assert nothing_selected(refitted=1.1 * FAR_REPEATED, repeated=True, tuned=1.0).verdict == "unknown_effect"

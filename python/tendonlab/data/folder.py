@@ -14,6 +14,8 @@ from tendonlab.data.missing_inputs import absent_inputs
 from tendonlab.data.parameters import assumptions, read_nominal_effects, read_parameters, read_system
 from tendonlab.data.schema import FILE, read_toml
 from tendonlab.data.signals import read_signals
+from tendonlab.data.stamps import with_even_stamps
+from tendonlab.data.wraps import without_wraps
 from tendonlab.errors import DatasetError, ParameterError, nearest_name
 from tendonlab.simulation import catalog
 from tendonlab.simulation.records import Controller, Experiment, SignalSpec
@@ -49,7 +51,7 @@ def load(path: str | PathLike[str]) -> Dataset:
         time_unit=unit,
         time_stated="time" in top.values,
     )
-    experiments = read_experiments(top, context)
+    experiments, mended = _mended(read_experiments(top, context), signals, info=info, controller=controller)
     _require_motion(experiments, signals.values(), info=info, controller=controller)
     _require_moving_output(experiments, signals.values())
     command = signals.get(info.command.name) if info.command is not None else None
@@ -57,6 +59,7 @@ def load(path: str | PathLike[str]) -> Dataset:
     warnings = [
         *assumptions(top, parameters, experiments, info, command_is_effort=command_is_effort),
         *_doubts(experiments, signals.values(), info=info),
+        *mended,
         *_split_notes(experiments, given=split_is_given(top)),
         *(() if info.steady else _gap_notes(experiments)),
     ]
@@ -74,6 +77,19 @@ def load(path: str | PathLike[str]) -> Dataset:
         warnings=tuple(warnings),
     )
     return replace(dataset, warnings=(*warnings, *absent_inputs(dataset)))
+
+
+def _mended(
+    experiments: tuple[Experiment, ...],
+    signals: dict[str, SignalSpec],
+    *,
+    info: catalog.SystemInfo,
+    controller: Controller | None,
+) -> tuple[tuple[Experiment, ...], list[str]]:
+    """The experiments without what recording did to stamps and angles, and what was mended, in words."""
+    experiments, of_stamps = (experiments, []) if info.steady else with_even_stamps(experiments)
+    experiments, of_angles = without_wraps(experiments, signals, info, controller)
+    return experiments, [*of_stamps, *of_angles]
 
 
 def _require_motion(

@@ -246,7 +246,7 @@ def make_case(
     experiments = dataset.experiments if experiments is None else experiments
     replay = choose_replay(dataset, system)
     prepared = tuple(_judged(prepare(e, system, replay), e) for e in experiments)
-    noise = sensor_noise(dataset, system, prepared)
+    noise = sensor_noise(dataset, system, prepared, experiments)
     known = scales(system, prepared)
     case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
     if replay.kind != "controller" and _motor_is_off(case):

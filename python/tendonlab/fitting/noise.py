@@ -10,9 +10,10 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.errors import DatasetError
+from tendonlab.fitting.set_points import Points, noise_of_points, points_of
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.reading import common_step, noise_sd
-from tendonlab.simulation.records import SignalSpec
+from tendonlab.simulation.records import Experiment, SignalSpec
 from tendonlab.simulation.system import System
 
 NEAR_FLOOR = 1.3  # whitened mean square below which a model is nearly at the floor
@@ -92,9 +93,11 @@ def is_sparse(measured: np.ndarray, order: int) -> bool:
     return num_following(measured, order) < FOLLOWING * int(np.count_nonzero(measured))
 
 
-def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared]) -> np.ndarray:
-    """Sd of the white noise of each output, in its unit: as stated, else from fourth differences; NaN where no record
-    measured it.
+def sensor_noise(
+    dataset: Dataset, system: System, prepared: Sequence[Prepared], experiments: Sequence[Experiment] | None = None
+) -> np.ndarray:
+    """Sd of the white noise of each output, in its unit: as stated, else from fourth differences, or of steady points
+    as `noise_of_points` has it; NaN where no record measured it. `prepared` are `experiments`, by default all.
 
     Rounding to the resolution, stated or found, adds resolution/√12. To a stated noise it comes in squares. The fourth
     differences of a record that moves on at every sample hold its rounding already, those of one that repeats its
@@ -102,25 +105,31 @@ def sensor_noise(dataset: Dataset, system: System, prepared: Sequence[Prepared])
     offset; 1 for a record that never changes. Raises DatasetError where no output was measured."""
     outputs = system.info.outputs
     noise = np.full(len(outputs), np.nan)
+    runs, inputs = dataset.experiments if experiments is None else experiments, [s.name for s in system.info.inputs]
     for c, output in enumerate(outputs):
         signal = dataset.signals.get(output.name)
-        records = [e.measured[c] for e in prepared if np.isfinite(e.measured[c]).any()]
-        if signal is not None and records:
-            noise[c] = noise_of(signal, records)
+        measured = [
+            (run, e.measured[c]) for run, e in zip(runs, prepared, strict=True) if np.isfinite(e.measured[c]).any()
+        ]
+        if signal is not None and measured:
+            records = [record for _, record in measured]
+            points = points_of([run for run, _ in measured], inputs, records) if system.info.steady else None
+            noise[c] = noise_of(signal, records, points)
     if np.isnan(noise).all():
         names = ", ".join(output.name for output in outputs)
         raise DatasetError(f"{dataset.name}: no output of {system.kind} was measured; expected one of {names}")
     return noise
 
 
-def noise_of(signal: SignalSpec, records: Sequence[np.ndarray]) -> float:
-    """Sd of the white noise of one output, from its records; see `sensor_noise`."""
+def noise_of(signal: SignalSpec, records: Sequence[np.ndarray], points: Sequence[Points] | None = None) -> float:
+    """Sd of the white noise of one output, from its records, or from steady `points`; see `sensor_noise`."""
     rounding = rounding_of(signal)
     smallest = SMALLEST * float(np.nanstd(np.concatenate(records)))
     stated = 0.0 if signal.noise_sd is None else float(np.hypot(signal.noise_sd, rounding))
     if stated > 0.0:
         return max(stated, smallest)
-    return max(float(np.median([noise_sd(r) for r in records])), rounding, smallest) or 1.0
+    shown = float(np.median([noise_sd(r) for r in records])) if points is None else noise_of_points(points)
+    return max(shown, rounding, smallest) or 1.0
 
 
 def rounding_of(signal: SignalSpec) -> float:

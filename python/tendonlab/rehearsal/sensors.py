@@ -17,7 +17,7 @@ from tendonlab.errors import DatasetError, NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, remaining, sensitivities
-from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, noise_of, remembered, without_rounding
+from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, remembered, without_rounding
 from tendonlab.simulation.reading import noise_sd
 
 if TYPE_CHECKING:
@@ -145,5 +145,4 @@ def _white(signal: SignalSpec, case: Case, c: int) -> float:
     """White noise before rounding: an estimate from rounded readings holds that of the rounding already."""
     if signal.noise_sd is not None:
         return signal.noise_sd
-    total = noise_of(signal, [ready.measured[c] for ready in case.prepared if np.isfinite(ready.measured[c]).any()])
-    return without_rounding(total, signal)
+    return without_rounding(float(case.noise[c]), signal)

@@ -14,7 +14,7 @@ from tendonlab.diagnosis.answer.allowed import allowed
 from tendonlab.diagnosis.answer.beliefs import strain
 from tendonlab.diagnosis.answer.by_noise import more_by_noise
 from tendonlab.diagnosis.answer.calibration import shipped
-from tendonlab.diagnosis.answer.caveats import caveats
+from tendonlab.diagnosis.answer.caveats import caveats, drowned
 from tendonlab.diagnosis.answer.explore import explore
 from tendonlab.diagnosis.answer.findings import findings
 from tendonlab.diagnosis.answer.followed import advise_unknown
@@ -148,6 +148,7 @@ def _levels(
         scattered=scattered(case, final) if doubtful and not search.selected else 0.0,
         strained=strain(case, final),
         drifted=drift.chance if drift and drift.tells else 1.0,
+        drowned=len(drowned(case, floor, judged)) == len(case.measured),
     )
     if levels.repeated and levels.is_far:
         levels = replace(levels, by_noise=more_by_noise(case, final.system, floor, judged, seed=seed))

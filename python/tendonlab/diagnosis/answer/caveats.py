@@ -61,17 +61,23 @@ def _worse(stages: Mapping[str, Replayed], floor: Floor, added: Sequence[str]) -
     ]
 
 
-def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
-    said = []
+def drowned(case: Case, floor: Floor, judged: Sequence[int]) -> dict[int, float]:
+    """The outputs whose noise floor exceeds their motion in the experiments `judged`, with the rms of that motion."""
+    swings = {}
     for c in case.measured:
         records = [case.prepared[i].measured[c] for i in judged]
         swing = float(np.sqrt(np.mean([np.nanvar(row) for row in records if np.isfinite(row).any()] or [np.nan])))
         if floor.rms[c] > swing:
-            said.append(
-                f"The noise floor of {case.outputs[c]} ({number(floor.rms[c], 2)}) exceeds its motion (rms "
-                f"{number(swing, 2)}), so this output supports no conclusion."
-            )
-    return said
+            swings[c] = swing
+    return swings
+
+
+def _drowned(case: Case, floor: Floor, judged: Sequence[int]) -> list[str]:
+    return [
+        f"The noise floor of {case.outputs[c]} ({number(floor.rms[c], 2)}) exceeds its motion (rms "
+        f"{number(swing, 2)}), so this output supports no conclusion."
+        for c, swing in drowned(case, floor, judged).items()
+    ]
 
 
 def _differs(outlier: OutlierRun | None) -> list[str]:

@@ -57,7 +57,7 @@ class Levels:
     `scattered`: by how much friction differs from run to run. `strained`: by how many stated standard deviations the
     fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of friction over the session, 1
     where there is none that matters. `by_noise`: by how many times more noise alone leaves of held-out experiments than
-    of repeated ones."""
+    of repeated ones. `drowned`: whether the floor of every output exceeds its motion."""
 
     nominal: float
     tuned: float
@@ -73,6 +73,7 @@ class Levels:
     drifted: float = 1.0
     foretold: float | None = None
     by_noise: float = 1.0
+    drowned: bool = False
 
     @property
     def far_room(self) -> float:
@@ -139,6 +140,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
         verdict = "parameters_only" if room > 0 else "unknown_effect"
     else:
         verdict = "effect" if spare >= 0 else "unknown_effect"
+    if at_floor and levels.drowned:  # such data speak for no verdict
+        weight = {name: float(name != "data_fault") for name in weight}
     weight[verdict] = max(weight[verdict], 1.05 * max(weight.values()), 1e-9)
     total = sum(weight.values())
     is_whole = 1.0
