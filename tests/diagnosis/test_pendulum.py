@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import tendonlab as tl
+from tendonlab.fitting.case import make_case
 
 INERTIA, GRAVITY, VISCOUS, COULOMB, STEP = 0.021, 0.9, 0.004, 0.01, 0.01
 STARTS = ((1.0, 0.0), (-0.7, 0.0), (0.5, 1.0), (1.3, -1.0))
@@ -70,6 +71,15 @@ def test_free_swings_are_diagnosed_at_the_scale_that_is_stated(tmp_path, command
     if selected:  # gravity, with the same relative sd but listed later, follows the inertia that is held
         found = why.effects[0].parameters["coulomb"]["value"]
         assert found == pytest.approx(1.15 * COULOMB, rel=0.03)
+
+
+@pytest.mark.parametrize("is_driven", [False, True])
+def test_where_a_free_swing_rests_is_told_once(tmp_path: Path, is_driven: bool) -> None:
+    torque = (lambda t, k: 0.3 if t < 0.5 else 0.0) if is_driven else off
+    (ready, *_) = make_case(swing(tmp_path, torque, coulomb=0.06)).prepared
+    time = np.asarray(ready.core.time)
+    assert np.isfinite(ready.measured[0, (time > 0.1) & (time < 0.8)]).all()
+    assert np.isfinite(ready.measured[0, time > 4.0]).all() == is_driven
 
 
 @pytest.mark.cpu(30)

@@ -29,6 +29,7 @@ NUMERICS_SHARE = 0.05  # of the sensors' noise that the simulator's own error ma
 TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; and the share of the noise at most then
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
+RESTS = 5.0  # sd of a sensor, within which of its last reading it shows no motion
 ALL_NOISE = 1.3  # times the white part of a log, within which all of it is noise
 OFF = (
     "The motor is off in every training experiment, and a command that reads noise alone is taken as 0. Free motion "
@@ -252,7 +253,8 @@ def make_case(
     if replay.kind != "controller" and _motor_is_off(case):
         silent = tuple(_without_noise(e, system.info.inputs[0].name) for e in case.experiments)
         prepared = tuple(_judged(prepare(e, system, replay), e) for e in silent)
-        case = _without_motor(replace(case, experiments=silent, prepared=prepared))
+        moving = tuple(_until_rest(ready, noise) for ready in prepared)
+        case = _without_motor(replace(case, experiments=silent, prepared=moving))
     return case if tolerance else fine_enough(case, noise)
 
 
@@ -276,6 +278,21 @@ def _without_motor(case: Case) -> Case:
         return replace(case, motor_is_off=True)
     warned = replace(case.dataset, warnings=(*case.dataset.warnings, OFF))
     return replace(case, dataset=warned, motor_is_off=True, swings_freely=True)
+
+
+def _until_rest(ready: Prepared, noise: np.ndarray) -> Prepared:
+    """The experiment without its end, where nothing moves any more: noise decides at which turn a swing stops, and the
+    place where it rests tells that turn thousands of times."""
+    ends = [0]
+    for c in np.flatnonzero(np.isfinite(noise)):
+        y = ready.measured[c]
+        there = np.flatnonzero(np.isfinite(y))
+        last = np.median(y[there[-max(1, len(there) // 20) :]]) if len(there) else 0.0
+        moved = there[np.abs(y[there] - last) > RESTS * noise[c]]
+        ends.append(int(moved[-1]) + 1 if len(moved) else 0)
+    measured = ready.measured.copy()
+    measured[:, max(ends) :] = np.nan
+    return replace(ready, measured=measured)
 
 
 def _without_noise(experiment: Experiment, command: str) -> Experiment:
