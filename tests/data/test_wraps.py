@@ -114,3 +114,11 @@ def test_two_angles_that_move_as_one_lie_at_one_turn(two_inertia, write):
     for experiment in load(write(two_inertia)):
         data = experiment.data
         np.testing.assert_allclose(data["motor_angle"] - data["joint_angle"], 0.04, atol=1e-12)
+
+
+def test_a_record_that_is_nowhere_near_the_others_stays_on_its_turn(rig, write):
+    """The first experiment passes the jump; the second, far from where the first one moved, does not."""
+    rig.frames["one.csv"]["q"] = wrapped(3.0 + np.sin(TIME))
+    rig.frames["two.csv"]["q"] = -1.0 + 0.3 * np.sin(TIME)
+    found = load(write(rig))
+    np.testing.assert_allclose(found["two"].data["joint_angle"], -1.0 + 0.3 * np.sin(TIME), atol=1e-12)

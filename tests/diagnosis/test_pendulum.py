@@ -82,6 +82,35 @@ def test_where_a_free_swing_rests_is_told_once(tmp_path: Path, is_driven: bool) 
     assert np.isfinite(ready.measured[0, time > 4.0]).all() == is_driven
 
 
+def test_a_held_out_run_that_is_driven_keeps_its_torque_and_its_end(tmp_path: Path) -> None:
+    case = make_case(swing(tmp_path, lambda t, k: 0.4 if k == 3 else 0.0, coulomb=0.06))
+    assert case.swings_freely
+    assert (case.experiments[3].data["motor_torque"] == 0.4).all()
+    assert np.isfinite(case.prepared[3].measured[0, -1])
+    assert np.isnan(case.prepared[0].measured[0, -1])
+
+
+def test_a_run_at_rest_among_swings_stays(tmp_path: Path) -> None:
+    swing(tmp_path, off, coulomb=0.06)
+    still = pd.read_csv(tmp_path / "run-1.csv")
+    still.assign(q=1e-4 * np.random.default_rng(4).standard_normal(len(still))).to_csv(
+        tmp_path / "run-1.csv", index=False
+    )
+    case = make_case(tl.load(tmp_path))
+    assert case.motor_is_off
+    assert np.isfinite(case.prepared[1].measured[0]).sum() > 500
+
+
+def test_a_known_condition_tells_the_scale(tmp_path: Path) -> None:
+    swing(tmp_path, off, coulomb=0.06)
+    text = (tmp_path / "dataset.toml").read_text()
+    weighed = text.replace('split = "train"\n', 'split = "train"\nconditions = { gravity_torque = 0.9 }\n')
+    (tmp_path / "dataset.toml").write_text(weighed)
+    case = make_case(tl.load(tmp_path))
+    assert case.motor_is_off
+    assert not case.swings_freely
+
+
 @pytest.mark.cpu(30)
 def test_one_driven_run_tells_the_scale(tmp_path: Path) -> None:
     kicked = swing(tmp_path, lambda t, k: 0.5 if k == 0 and 2.0 <= t < 4.0 else 0.0, coulomb=COULOMB)
@@ -126,3 +155,12 @@ def test_zeros_in_place_of_a_torque_that_moves_the_rig_block(tmp_path: Path) -> 
         pd.read_csv(log).assign(u=0.0).to_csv(log, index=False)
     (problem,) = [f for f in tl.check(tl.load(tmp_path)).findings if f.blocks]
     assert (problem.problem, problem.signal) == ("uninformative", "motor_torque")
+
+
+def test_free_swings_beside_one_constant_torque_load(tmp_path: Path) -> None:
+    assert len(swing(tmp_path, lambda t, k: 0.4 if k == 2 else 0.0).experiments) == 4
+
+
+def test_one_constant_torque_throughout_identifies_nothing(tmp_path: Path) -> None:
+    with pytest.raises(tl.DatasetError, match="constant"):
+        swing(tmp_path, lambda t, k: 0.4)

@@ -111,3 +111,12 @@ def test_the_order_of_rows_means_nothing() -> None:
 def test_shuffled_maps_are_diagnosed(excess: float, verdict: str, selected: tuple[str, ...]) -> None:
     found = tl.diagnose(friction_map(3, excess=excess), progress=False)
     assert (found.verdict, found.selected) == (verdict, selected)
+
+
+@pytest.mark.parametrize("num", [5, 6])
+def test_few_points_tell_the_size_of_their_noise(num: int) -> None:
+    """Never none: a floor of 0 would make the least misfit certain."""
+    few = np.concatenate([-np.geomspace(0.5, 5.0, num), np.geomspace(0.5, 5.0, num)])
+    found = [noise_of_points([points(few, seed)]) for seed in range(20)]
+    assert min(found) > 0.05 * NOISE
+    assert np.median(found) < 5.0 * NOISE

@@ -19,5 +19,9 @@ def free_runs(equation: Equation, logs: Logs) -> frozenset[int]:
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
     logged = [e.data[command.name].to_numpy(dtype=float) for e in dataset]
     taken = [inertia * rms(logs.moving[first][2, logs.run == k]) for k in range(len(logged))]
-    pairs = enumerate(zip(logged, taken, strict=True))
-    return frozenset(k for k, (command_log, most) in pairs if is_next_to_0(system, command_log, float(most)))
+    efforts = [s.name for s in system.info.inputs if s.dimension == "effort"]
+    pushed = [any(name in e.data and e.data[name].any() for name in efforts) for e in dataset]
+    runs = enumerate(zip(logged, taken, pushed, strict=True))
+    return frozenset(
+        k for k, (log, most, is_pushed) in runs if not is_pushed and is_next_to_0(system, log, float(most))
+    )

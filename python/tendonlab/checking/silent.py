@@ -59,4 +59,5 @@ def _noisy(dataset: Dataset, names: list[str]) -> list[str]:
 def _is_noise(dataset: Dataset, name: str) -> bool:
     records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset]
     white = float(np.median([white_noise_sd(record) for record in records]))
-    return float(np.std(np.concatenate(records))) <= NOISE * white
+    is_off = not any(record.any() for record in records)
+    return is_off or (white > 0.0 and float(np.std(np.concatenate(records))) <= NOISE * white)

@@ -102,7 +102,7 @@ def _require_motion(
     """Raise DatasetError where what drives the replay is constant in every experiment and so identifies nothing. A
     motor that is off lets the rig swing freely, which does."""
     required = [signal.name for signal in info.inputs if signal.required]
-    if info.command is not None and (controller is not None or _is_off(experiments, info.command.name)):
+    if info.command is not None and (controller is not None or _differs(experiments, info.command.name)):
         required.remove(info.command.name)
     # A controller computes the motor's command, from a reference that moves or is disturbed.
     if controller is not None and (controller.disturbance is None or _is_constant(experiments, controller.disturbance)):
@@ -128,8 +128,10 @@ def _is_constant(experiments: Iterable[Experiment], name: str) -> bool:
     return all(bool((frame == frame.iloc[0]).all()) for frame in (experiment.data[name] for experiment in experiments))
 
 
-def _is_off(experiments: Iterable[Experiment], name: str) -> bool:
-    return not any(experiment.data[name].any() for experiment in experiments)
+def _differs(experiments: Iterable[Experiment], name: str) -> bool:
+    """Whether a command is 0 in some experiment: free motion; or differs between experiments."""
+    records = [experiment.data[name] for experiment in experiments]
+    return any(not record.any() for record in records) or len({float(record.iloc[0]) for record in records}) > 1
 
 
 def _doubts(experiments: Iterable[Experiment], signals: Iterable[SignalSpec], *, info: catalog.SystemInfo) -> list[str]:

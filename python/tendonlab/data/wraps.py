@@ -62,12 +62,14 @@ def jumps(values: np.ndarray) -> bool:
 
 def _set_angles(columns: Sequence[Columns], angles: Sequence[str], wrapping: Sequence[str]) -> None:
     """Unwrap the angles that are `wrapping` somewhere. All records of one then lie at the whole turn next to that of
-    the first record, which is the turn next to 0 where it jumps itself; angles that move as one lie at one turn."""
+    the first record, which is the turn next to 0 where it jumps itself, but for those that do not jump themselves and
+    would lie apart from that record there as well; angles that move as one lie at one turn."""
     leader = next((name for name in angles if name not in wrapping), next(iter(wrapping), ""))
     for name in sorted(wrapping, key=lambda name: name != leader):
         first = next(column[name] for column in columns if np.isfinite(column[name]).any())
         anchor = _middle(unwrapped(first))
         anchor -= TURN * np.round(anchor / TURN) if jumps(first) else 0.0
+        there = _turned(unwrapped(first), _middle(unwrapped(first)) - anchor)
         for column in columns:
             values = unwrapped(column[name])
             beside = values - column[leader]
@@ -75,7 +77,9 @@ def _set_angles(columns: Sequence[Columns], angles: Sequence[str], wrapping: Seq
                 name != leader and np.isfinite(beside).any() and np.nanmax(beside) - np.nanmin(beside) < TOGETHER
             )
             off = _middle(beside) if moves_along else _middle(values) - anchor
-            column[name] = _turned(values, off)
+            turned = _turned(values, off)
+            if moves_along or jumps(column[name]) or _overlap(turned, there):
+                column[name] = turned
 
 
 def _as_asked(asked: np.ndarray, output: np.ndarray, *, may_turn: bool) -> np.ndarray:
@@ -95,6 +99,13 @@ def unwrapped(values: np.ndarray) -> np.ndarray:
         turns = np.cumsum(np.round(np.diff(values[there]) / TURN))
         out[there] -= TURN * np.concatenate([[0.0], turns])
     return out
+
+
+def _overlap(values: np.ndarray, others: np.ndarray) -> bool:
+    """Whether two records share angles."""
+    if not (np.isfinite(values).any() and np.isfinite(others).any()):
+        return True
+    return bool(np.nanmin(values) <= np.nanmax(others) and np.nanmin(others) <= np.nanmax(values))
 
 
 def _middle(values: np.ndarray) -> float:

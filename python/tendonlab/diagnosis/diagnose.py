@@ -97,7 +97,7 @@ def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, F
     they are, they are taken as straight."""
     dataset = with_found_resolutions(dataset)
     found = _searched(dataset, system, shop)
-    drawn = straight_inputs(dataset, found[0], shop)
+    drawn = straight_inputs(dataset, system, found[0], shop)
     if drawn is None:
         return *found, ()
     return *(found if drawn.is_stated_otherwise else _searched(drawn.dataset, system, shop)), (drawn.words,)

@@ -52,10 +52,9 @@ class Straight:
         return DRAWN.format(names, 1.0 / self.left, "hold = false, or hold = true if it is a computer's command")
 
 
-def straight_inputs(dataset: Dataset, search: Search, shop: Workshop) -> Straight | None:
+def straight_inputs(dataset: Dataset, system: System, search: Search, shop: Workshop) -> Straight | None:
     """Of an open loop: its inputs straight between their samples, where the final model then leaves less than half of
     what it leaves above the sensors' noise; else None."""
-    system = search.final.system
     names = tuple(_held(dataset, system))
     if not names or dataset.controller is not None or system.info.sampled:
         return None
@@ -64,12 +63,14 @@ def straight_inputs(dataset: Dataset, search: Search, shop: Workshop) -> Straigh
         return None
     drawn = _straight(dataset, names)
     try:
-        case = make_case(thinned(drawn, dataset.system()), search.fitter.case.system)
+        case = make_case(thinned(drawn, system), system)
         left = _under_white(case, search.final, shop, solve=False)
         if left.mean_square > held.mean_square:  # as the model is, which was fitted to held samples
             return None
         held, left = _under_white(search.fitter.case, held, shop), _under_white(case, left, shop)
     except NumericalError:
+        return None
+    if held.mean_square < EXPLAINED:
         return None
     more, less = held.mean_square - 1.0, left.mean_square - 1.0
     return Straight(drawn, left.mean_square / held.mean_square, names) if less < LEFT * more else None

@@ -13,7 +13,7 @@ from tendonlab import _core
 from tendonlab.data import Dataset, Experiment, simulator_of
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.noise import blocks_of, sensor_noise
-from tendonlab.fitting.priors import Scale, scales
+from tendonlab.fitting.priors import OF_TORQUE, Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.catalog import PORT_QUANTITIES
 from tendonlab.simulation.motor import is_next_to_0
@@ -29,7 +29,7 @@ NUMERICS_SHARE = 0.05  # of the sensors' noise that the simulator's own error ma
 TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; and the share of the noise at most then
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
-RESTS = 5.0  # sd of a sensor, within which of its last reading it shows no motion
+RESTS, MOVES = 5.0, 50  # sd of a sensor, within which of its last reading it shows no motion; readings of a swing
 ALL_NOISE = 1.3  # times the white part of a log, within which all of it is noise
 OFF = (
     "The motor is off in every training experiment, and a command that reads noise alone is taken as 0. Free motion "
@@ -250,39 +250,51 @@ def make_case(
     noise = sensor_noise(dataset, system, prepared, experiments)
     known = scales(system, prepared)
     case = Case(dataset, system, replay, tuple(experiments), prepared, noise, known, tolerance or TOLERANCES[0])
-    if replay.kind != "controller" and _motor_is_off(case):
-        silent = tuple(_without_noise(e, system.info.inputs[0].name) for e in case.experiments)
-        prepared = tuple(_judged(prepare(e, system, replay), e) for e in silent)
-        moving = tuple(_until_rest(ready, noise) for ready in prepared)
-        case = _without_motor(replace(case, experiments=silent, prepared=moving))
+    if replay.kind != "controller" and (off := _runs_without_motor(case)):
+        case = _without_motor(case, off)
     return case if tolerance else fine_enough(case, noise)
 
 
-def _motor_is_off(case: Case) -> bool:
-    """Whether the command is next to 0 in every training experiment, beside what it takes to move as the rig moved."""
+def _runs_without_motor(case: Case) -> frozenset[int]:
+    """The experiments whose logged command reads 0, or nothing but noise, next to 0 beside what it takes to move as the
+    rig moved; none unless the motor is off in every training experiment."""
     command = case.system.info.command
-    if command is None:
-        return False
+    if command is None or any(command.name not in e.data for e in case.experiments):
+        return frozenset()
     _, inertia, _ = _core.rigid_motion(case.system.kind, case.system.values(), case.system.active())
     moved = case.scales[case.system.info.ports[0].element]
     taken = float(inertia) * moved.flow**2 / moved.displacement
-    logs = (case.experiments[i].data.get(command.name) for i in case.train)
-    return all(log is not None and is_next_to_0(case.system, log.to_numpy(dtype=float), taken) for log in logs)
+    logs = [e.data[command.name].to_numpy(dtype=float) for e in case.experiments]
+    is_noise = [np.std(log) <= ALL_NOISE * white_noise_sd(log) for log in logs]
+    off = [noise and is_next_to_0(case.system, log, taken) for noise, log in zip(is_noise, logs, strict=True)]
+    return frozenset(np.flatnonzero(off).tolist()) if all(off[i] for i in case.train) else frozenset()
 
 
-def _without_motor(case: Case) -> Case:
-    """The case whose motor is off, marked as such, with a warning where nothing else known moves the rig."""
-    runs = [case.experiments[i] for i in case.train]
-    efforts = [s.name for s in case.system.info.inputs[1:] if s.dimension == "effort"]
-    if any(run.add or any(name in run.data and run.data[name].any() for name in efforts) for run in runs):
-        return replace(case, motor_is_off=True)
+def _without_motor(case: Case, off: frozenset[int]) -> Case:
+    """The case whose motor is `off` in all training experiments and these others, marked as such: their command is 0,
+    and they count until they rest. With a warning where nothing else known moves the rig."""
+    info, runs = case.system.info, [case.experiments[i] for i in case.train]
+    silent = [
+        replace(e, data=e.data.assign(**{info.inputs[0].name: 0.0})) if i in off else e
+        for i, e in enumerate(case.experiments)
+    ]
+    prepared = [
+        _until_rest(_judged(prepare(e, case.system, case.replay), e), case.noise) if i in off else case.prepared[i]
+        for i, e in enumerate(silent)
+    ]
+    case = replace(case, experiments=tuple(silent), prepared=tuple(prepared), motor_is_off=True)
+    efforts = [s.name for s in info.inputs[1:] if s.dimension == "effort"]
+    pushed = any(run.add or any(name in run.data and run.data[name].any() for name in efforts) for run in runs)
+    known = {info.parameters[k].dimension for i in case.train for k in case._conditions[i][0]}
+    if pushed or known & set(OF_TORQUE):
+        return case
     warned = replace(case.dataset, warnings=(*case.dataset.warnings, OFF))
-    return replace(case, dataset=warned, motor_is_off=True, swings_freely=True)
+    return replace(case, dataset=warned, swings_freely=True)
 
 
 def _until_rest(ready: Prepared, noise: np.ndarray) -> Prepared:
     """The experiment without its end, where nothing moves any more: noise decides at which turn a swing stops, and the
-    place where it rests tells that turn thousands of times."""
+    place where it rests tells that turn thousands of times. As it is where it hardly moves at all."""
     ends = [0]
     for c in np.flatnonzero(np.isfinite(noise)):
         y = ready.measured[c]
@@ -292,15 +304,7 @@ def _until_rest(ready: Prepared, noise: np.ndarray) -> Prepared:
         ends.append(int(moved[-1]) + 1 if len(moved) else 0)
     measured = ready.measured.copy()
     measured[:, max(ends) :] = np.nan
-    return replace(ready, measured=measured)
-
-
-def _without_noise(experiment: Experiment, command: str) -> Experiment:
-    """The experiment with a command of 0 where its log reads nothing but noise: a sensor's, which moves nothing."""
-    log = experiment.data[command].to_numpy(dtype=float)
-    if np.std(log) > ALL_NOISE * white_noise_sd(log):
-        return experiment
-    return replace(experiment, data=experiment.data.assign(**{command: 0.0}))
+    return replace(ready, measured=measured) if np.isfinite(measured).sum() > MOVES else ready
 
 
 def _judged(ready: Prepared, experiment: Experiment) -> Prepared:

@@ -10,7 +10,7 @@ import numpy as np
 from tendonlab.simulation.reading import rounding_step
 from tendonlab.simulation.records import Experiment
 
-ENOUGH = 8  # differences that tell a spread
+ENOUGH, FEWEST = 8, 3  # differences that tell a spread, and that tell its size where there are no more
 ORDERS = (1, 2)  # neighbours to either side that a point is compared with: a straight line, a cubic
 
 
@@ -47,7 +47,7 @@ def noise_of_points(points: Sequence[Points]) -> float:
         return max(shown, rounding)
     whole = Points(np.concatenate([p.inputs for p in points]), np.concatenate([p.values for p in points]))
     shown = min(filter(None, (_of_replicates([whole]), _of_neighbours(points))), default=0.0)
-    return max(shown or _of_neighbours([whole]), rounding)
+    return max(shown or _of_neighbours([whole]) or _of_neighbours([whole], fewest=FEWEST), rounding)
 
 
 def _of_replicates(points: Sequence[Points]) -> float | None:
@@ -60,13 +60,13 @@ def _of_replicates(points: Sequence[Points]) -> float | None:
     return float(np.sqrt(squares / freedom)) if freedom >= ENOUGH else None
 
 
-def _of_neighbours(points: Sequence[Points]) -> float:
+def _of_neighbours(points: Sequence[Points], *, fewest: int = ENOUGH) -> float:
     """Sd of what neighbours do not foretell of a point, by the number of neighbours that leaves least: fewer pass over
     less, and more follow a curve. 0 where there are too few points."""
     found = []
     for order in ORDERS:
         left = np.concatenate([_left(line, order) for p in points for line in _lines(p)] or [np.zeros(0)])
-        if len(left) >= ENOUGH:
+        if len(left) >= fewest:
             found.append(1.4826 * float(np.median(np.abs(left))))
     return min(found, default=0.0)
 
