@@ -12,8 +12,10 @@ import pytest
 
 import tendonlab as tl
 from interrupting import small_tasks_and_ctrl_c
+from tendonlab.checking.finding import Check
 from tendonlab.cli import demo
 from tendonlab.cli.commands import main
+from tendonlab.cli.text import check_text
 from twin import TwinDiagnosis
 
 Printed = pytest.CaptureFixture[str]
@@ -288,6 +290,14 @@ def test_a_terminal_without_the_letters_still_gets_the_answer(tmp_path: Path) ->
 def test_a_seed_that_is_none_is_refused_before_the_work(capsys: Printed, tiny: Path) -> None:
     assert main(["diagnose", str(tiny), "--seed", "-1"]) == 2
     assert "seed = -1: expected a whole number of at least 0" in complaint(capsys)
+
+
+def test_check_says_what_reading_the_logs_assumed() -> None:
+    found = Check("rig", ())
+    assert "Assumed" not in check_text(found)
+    assert "Assumed\n  - inputs that were not logged are taken as 0" in check_text(
+        found, ["inputs that were not logged are taken as 0"]
+    )
 
 
 def test_check_prints_what_it_found_and_writes_it(tmp_path: Path, capsys: Printed) -> None:

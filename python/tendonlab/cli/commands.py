@@ -195,7 +195,7 @@ def _check(given: Arguments) -> int:
     rig = load(_folder(given.dataset))
     _require_writable(given.out)
     found = check(rig)
-    print(check_text(found))
+    print(check_text(found, rig.warnings))
     if given.out is not None:
         given.out.write_text(json.dumps(found.to_dict(), indent=2, allow_nan=False) + "\n", encoding="utf-8")
         print(f"\nWritten: {given.out}")

@@ -66,8 +66,9 @@ def bullets(title: str, items: Sequence[str], *, numbered: bool = False) -> str:
     return "\n".join([title, *lines] if title else lines)
 
 
-def check_text(found: Check) -> str:
-    """What the check of the logs found: first what must be corrected, then what a diagnosis copes with."""
+def check_text(found: Check, assumed: Sequence[str] = ()) -> str:
+    """What the check of the logs found: first what must be corrected, then what a diagnosis copes with, and what was
+    `assumed` when they were read."""
     blocking = [_finding(f) for f in found.findings if f.blocks]
     others = [_finding(f) for f in found.findings if not f.blocks]
     verdict = (
@@ -77,6 +78,7 @@ def check_text(found: Check) -> str:
         wrapped(f"{found.dataset}: {verdict}"),
         bullets("Correct first", blocking),
         bullets("Noted", others),
+        bullets("Assumed", assumed),
         bullets("Not checked", found.notes),
     ]
     return "\n\n".join(part for part in parts if part)
