@@ -293,7 +293,7 @@ def test_a_seed_that_is_none_is_refused_before_the_work(capsys: Printed, tiny: P
 
 
 def test_check_says_what_reading_the_logs_assumed() -> None:
-    found = Check("rig", ())
+    found = Check(dataset="rig", findings=())
     assert "Assumed" not in check_text(found)
     assert "Assumed\n  - inputs that were not logged are taken as 0" in check_text(
         found, ["inputs that were not logged are taken as 0"]
