@@ -141,12 +141,13 @@ def test_free_motion_tells_no_lag(tmp_path: Path, coulomb: float) -> None:
     assert "the motor is off" in found.notes[0]
 
 
-def test_lags_are_those_of_the_runs_that_are_driven(tmp_path: Path) -> None:
+def test_the_late_run_keeps_its_name_where_others_are_left_out(tmp_path: Path) -> None:
     swing(tmp_path, lambda t, k: smooth(t, k) if k != 1 else 0.0, coulomb=COULOMB)
-    late = pd.read_csv(tmp_path / "run-0.csv")
-    late.assign(u=late.u.shift(-20, fill_value=0.0)).to_csv(tmp_path / "run-0.csv", index=False)
+    late = pd.read_csv(tmp_path / "run-2.csv")
+    late.assign(u=late.u.shift(-20, fill_value=0.0)).to_csv(tmp_path / "run-2.csv", index=False)
     (finding,) = [f for f in tl.check(tl.load(tmp_path)).findings if f.problem == "clock"]
-    assert finding.experiment in (None, "run-0")
+    assert finding.experiment == "run-2"
+    assert finding.seconds == pytest.approx(20 * STEP, abs=0.005)
 
 
 def test_zeros_in_place_of_a_torque_that_moves_the_rig_block(tmp_path: Path) -> None:

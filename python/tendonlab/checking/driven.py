@@ -6,7 +6,7 @@ from tendonlab import _core
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import Logs
 from tendonlab.checking.terms import rms
-from tendonlab.simulation.motor import is_next_to_0
+from tendonlab.simulation.motor import is_next_to_0, is_pushed
 
 
 def free_runs(equation: Equation, logs: Logs) -> frozenset[int]:
@@ -19,9 +19,7 @@ def free_runs(equation: Equation, logs: Logs) -> frozenset[int]:
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
     logged = [e.data[command.name].to_numpy(dtype=float) for e in dataset]
     taken = [inertia * rms(logs.moving[first][2, logs.run == k]) for k in range(len(logged))]
-    efforts = [s.name for s in system.info.inputs if s.dimension == "effort"]
-    pushed = [any(name in e.data and e.data[name].any() for name in efforts) for e in dataset]
-    runs = enumerate(zip(logged, taken, pushed, strict=True))
+    runs = enumerate(zip(dataset, logged, taken, strict=True))
     return frozenset(
-        k for k, (log, most, is_pushed) in runs if not is_pushed and is_next_to_0(system, log, float(most))
+        k for k, (e, log, most) in runs if not is_pushed(system, e) and is_next_to_0(system, log, float(most))
     )

@@ -11,6 +11,7 @@ import numpy as np
 
 from tendonlab import _core
 from tendonlab.data import Dataset, Experiment
+from tendonlab.simulation.motor import effort_per_command
 
 BESIDE = 4  # samples on either side, whose line tells the velocity
 ANSWERED = 0.3  # of the momentum of a spike that must be seen: the inertia may be wrong, or part of it decoupled
@@ -24,8 +25,7 @@ def moves_the_rig(dataset: Dataset, name: str, found: Mapping[tuple[str, str], n
     first = next((s.name for s in system.info.outputs if s.axis == 0 and s.name in dataset.outputs), None)
     if command is None or name != command.name or first is None:
         return False
-    gain = system.info.with_role("command_gain")
-    per = 1.0 if gain is None else system.parameters[gain.name]
+    per = effort_per_command(system)
     _, inertia, _ = _core.rigid_motion(system.kind, system.values(), system.active())
     pairs = [pair for e in dataset for pair in _momenta(e, name, first, found.get((e.name, name)))]
     given, seen = (per * np.array([p[0] for p in pairs]), np.array([inertia * p[1] - per * p[2] for p in pairs]))

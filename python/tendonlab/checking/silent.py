@@ -12,10 +12,9 @@ from tendonlab.checking.logs import Logs
 from tendonlab.checking.terms import rms, terms
 from tendonlab.data import Dataset
 from tendonlab.report.words import listing
-from tendonlab.simulation.reading import white_noise_sd
+from tendonlab.simulation.reading import is_all_noise
 from tendonlab.simulation.system import System
 
-NOISE = 1.3  # times the white part of all records of a signal, within which all of them is noise
 NEEDED = 20.0  # times what an input contributes, beyond which the logged motion needs something else
 UNBALANCED = 0.3  # of the largest effort that a fit leaves in the equation of motion: what misses where an input does
 SAMPLES, SHARE = 1500, 0.2  # that decide, and share of them that counts as independent
@@ -53,11 +52,8 @@ def all_at_rest(dataset: Dataset, system: System) -> Iterator[Finding]:
 
 def _noisy(dataset: Dataset, names: list[str]) -> list[str]:
     """Those of the signals that were logged in every experiment and read nothing but noise."""
-    return [name for name in names if all(name in e.data for e in dataset) and _is_noise(dataset, name)]
+    return [name for name in names if all(name in e.data for e in dataset) and is_all_noise(_records(dataset, name))]
 
 
-def _is_noise(dataset: Dataset, name: str) -> bool:
-    records = [e.data[name].dropna().to_numpy(dtype=float) for e in dataset]
-    white = float(np.median([white_noise_sd(record) for record in records]))
-    is_off = not any(record.any() for record in records)
-    return is_off or (white > 0.0 and float(np.std(np.concatenate(records))) <= NOISE * white)
+def _records(dataset: Dataset, name: str) -> list[np.ndarray]:
+    return [e.data[name].dropna().to_numpy(dtype=float) for e in dataset]

@@ -22,10 +22,13 @@ from tendonlab.simulation.system import System
 LEFT = 0.5  # share of what lies above the sensors' noise that straight lines may leave, to be believed
 EXPLAINED = 1.3  # mean square, in units of that noise, below which held samples explain the logs
 
-DRAWN = "{} is taken as straight between its samples: held, it leaves {:.3g} times the mean square error. State {}."
+DRAWN = (
+    "{} is taken as straight between its samples. Held, it leaves {:.3g} times the mean square error. State hold = "
+    "false, or hold = true if it is a computer's command."
+)
 DOUBTED = (
-    "{} is stated as held between its samples (hold = true), but straight between them the logs fit with {:.3g} times "
-    "less mean square error. State hold = false if it was measured, or is no command of a computer."
+    "{} is stated as held between its samples (hold = true). Held, it leaves {:.3g} times the mean square error that "
+    "straight lines between the samples leave. State hold = false if it was measured, or is no computer's command."
 )
 
 
@@ -47,9 +50,7 @@ class Straight:
     def words(self) -> str:
         """The warning that says so."""
         names = " and ".join(self.inputs)
-        if self.is_stated_otherwise:
-            return DOUBTED.format(names, 1.0 / self.left)
-        return DRAWN.format(names, 1.0 / self.left, "hold = false, or hold = true if it is a computer's command")
+        return (DOUBTED if self.is_stated_otherwise else DRAWN).format(names, 1.0 / self.left)
 
 
 def straight_inputs(dataset: Dataset, system: System, search: Search, shop: Workshop) -> Straight | None:

@@ -16,9 +16,9 @@ from tendonlab.fitting.noise import blocks_of, sensor_noise
 from tendonlab.fitting.priors import OF_TORQUE, Scale, scales
 from tendonlab.fitting.replay import choose_replay
 from tendonlab.simulation.catalog import PORT_QUANTITIES
-from tendonlab.simulation.motor import is_next_to_0
+from tendonlab.simulation.motor import is_next_to_0, is_pushed
 from tendonlab.simulation.prepare import Prepared, Replay, prepare
-from tendonlab.simulation.reading import white_noise_sd
+from tendonlab.simulation.reading import is_all_noise
 from tendonlab.simulation.system import System
 
 TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
@@ -30,7 +30,6 @@ TIE, TIED_SHARE = 1.5, 0.5  # times the error of finer steps: no falling one; an
 IN_VAIN = 2.0  # times the error of the best tolerance, within which a finer one is not worth its steps
 UNSEEN = 0.05  # s: no sensor or actuator is later
 RESTS, MOVES = 5.0, 50  # sd of a sensor, within which of its last reading it shows no motion; readings of a swing
-ALL_NOISE = 1.3  # times the white part of a log, within which all of it is noise
 OFF = (
     "The motor is off in every training experiment, and a command that reads noise alone is taken as 0. Free motion "
     "tells ratios of torques, inertias and stiffness alone, so the best known of these is taken at its word: all "
@@ -265,8 +264,7 @@ def _runs_without_motor(case: Case) -> frozenset[int]:
     moved = case.scales[case.system.info.ports[0].element]
     taken = float(inertia) * moved.flow**2 / moved.displacement
     logs = [e.data[command.name].to_numpy(dtype=float) for e in case.experiments]
-    is_noise = [np.std(log) <= ALL_NOISE * white_noise_sd(log) for log in logs]
-    off = [noise and is_next_to_0(case.system, log, taken) for noise, log in zip(is_noise, logs, strict=True)]
+    off = [is_all_noise([log]) and is_next_to_0(case.system, log, taken) for log in logs]
     return frozenset(np.flatnonzero(off).tolist()) if all(off[i] for i in case.train) else frozenset()
 
 
@@ -283,8 +281,7 @@ def _without_motor(case: Case, off: frozenset[int]) -> Case:
         for i, e in enumerate(silent)
     ]
     case = replace(case, experiments=tuple(silent), prepared=tuple(prepared), motor_is_off=True)
-    efforts = [s.name for s in info.inputs[1:] if s.dimension == "effort"]
-    pushed = any(run.add or any(name in run.data and run.data[name].any() for name in efforts) for run in runs)
+    pushed = any(run.add or is_pushed(case.system, run) for run in runs)
     known = {info.parameters[k].dimension for i in case.train for k in case._conditions[i][0]}
     if pushed or known & set(OF_TORQUE):
         return case

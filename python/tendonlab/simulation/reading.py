@@ -8,6 +8,7 @@ import numpy as np
 
 ROUNDING = 1e-9  # of its range: a record with less noise was computed, not measured
 REPEATED = 0.05  # share of samples equal to the one before, from which on readings may have been rounded
+ALL_NOISE = 1.3  # times the white part of records, within which all of them is noise
 FEWEST, SAME_STEP = 10, 0.01  # samples of a record that may show a step; share by which steps of records may differ
 SMALL, USUAL = 5.5, 0.15  # steps, up to which changes show whether all are whole; share of changes that are so small
 WHOLE, MOSTLY = 0.1, 0.9  # of a step, from whole ones; share of the small changes that must be so near
@@ -31,6 +32,14 @@ def white_noise_sd(values: np.ndarray) -> float:
         return 0.0
     weights = np.sqrt(70.0)  # root of the sum of squared binomials of the fourth difference
     return float(1.4826 * np.median(np.abs(np.diff(y, 4))) / weights)
+
+
+def is_all_noise(records: Sequence[np.ndarray]) -> bool:
+    """Whether records of one sensor, without gaps, read 0 alone, or about one value nothing but noise."""
+    if not any(record.any() for record in records):
+        return True
+    white = float(np.median([white_noise_sd(record) for record in records]))
+    return white > 0.0 and float(np.std(np.concatenate(records))) <= ALL_NOISE * white
 
 
 def rounding_step(values: np.ndarray) -> float:

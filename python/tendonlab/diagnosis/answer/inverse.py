@@ -10,6 +10,7 @@ import pandas as pd
 
 from tendonlab.fitting.case import Case
 from tendonlab.report.diagnosis import SideTable
+from tendonlab.simulation.motor import effort_per_command
 from tendonlab.simulation.system import System
 
 CUTOFF = 60.0  # Hz, of a Butterworth filter of fourth order, forwards and backwards: it shifts no phase
@@ -69,7 +70,7 @@ def _motion(case: Case, i: int, output: int) -> Motion:
     experiment, info = case.experiments[i], case.system.info
     time = np.asarray(experiment.time)
     step = float(np.median(np.diff(time)))
-    effort = experiment.data[info.inputs[0].name].to_numpy(dtype=float) * _command_gain(case.system)
+    effort = experiment.data[info.inputs[0].name].to_numpy(dtype=float) * effort_per_command(case.system)
     for known in info.inputs[1:]:
         if known.name in experiment.data:
             effort = effort + experiment.data[known.name].to_numpy(dtype=float)
@@ -130,16 +131,10 @@ def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray
         for q, value in own.items()
     }
     if (effect.group, effect.effect) == ("actuation", "offset"):
-        return np.full_like(velocity, -_command_gain(system))
+        return np.full_like(velocity, -effort_per_command(system))
     if effect.group != "friction":
         return np.zeros_like(velocity)
     return np.asarray(effect.law(**switched).force(velocity=velocity)) / HALF
-
-
-def _command_gain(system: System) -> float:
-    """Effort per unit of the command."""
-    gain = system.info.with_role("command_gain")
-    return 1.0 if gain is None else system.parameters[gain.name]
 
 
 def _rms(x: np.ndarray) -> float:
