@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tendonlab._core import Free
-from tendonlab.fitting.priors import AMPLITUDE_SD, SHAPE_LOG_SD, Scale, free_parameters, start_of
+from tendonlab.fitting.priors import AMPLITUDE_SD, FRACTION_SD, SHAPE_LOG_SD, Scale, free_parameters, start_of
 from tendonlab.papers import s2
 from tendonlab.simulation.records import NominalParameter
 from tendonlab.simulation.system import System
@@ -79,6 +79,20 @@ def test_an_added_effect_starts_at_nothing_with_a_shape_that_is_typical_of_the_r
     assert (shape.name, shape.log, shape.mean, shape.sd) == ("joint_stribeck_velocity", True, 0.0, SHAPE_LOG_SD)
     assert shape.value(0.0) == pytest.approx(0.5 * 0.1)
     assert shape.value(math.log(2.0)) == pytest.approx(2.0 * shape.value(0.0))
+
+
+def test_a_fraction_is_believed_as_it_is() -> None:
+    """Its logarithm would keep it from 0."""
+    seen = {"joint": Scale(effort=3.0, flow=0.5, displacement=1.0)}
+    rig = System(kind="rigid_joint", parameters={"inertia": 1.0, "gravity_torque": 0.5, "torque_constant": 1.0})
+    system = rig.with_effects({"joint:load_dependence": start_of(rig, "joint:load_dependence", seen)})
+    share, amplitude = free_parameters(system, {}, seen, added=["joint:load_dependence"])
+    assert (amplitude.name, share.name) == ("joint_load_dependence", "motor_inertia_share")
+    assert (share.log, share.lower, share.upper) == (False, 0.0, 1.0)
+    assert (share.start, share.value(share.mean)) == (0.5, pytest.approx(0.5))
+    assert share.value(share.mean + share.sd) == pytest.approx(0.5 + FRACTION_SD)
+    (again, *_) = free_parameters(system, {"motor_inertia_share": NominalParameter(0.5)}, seen)
+    assert (again.name, again.log, again.value(again.mean)) == ("motor_inertia_share", False, pytest.approx(0.5))
 
 
 def believed(**stated: NominalParameter) -> dict[str, Free]:

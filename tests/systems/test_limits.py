@@ -144,6 +144,25 @@ def test_load_dependence_is_friction_in_proportion_to_load():
             assert done["joint_velocity"][1] == pytest.approx(speed - np.sign(speed) * 0.02, rel=1e-12)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_friction_carries_what_the_inertia_before_it_leaves(share: float):
+    """What passes the friction of a joint: the motor's effort less what accelerates the share of inertia before it."""
+    system = joint(
+        ("joint:load_dependence",), joint_load_dependence=0.05, motor_inertia_share=share, gravity_torque=0.4
+    )
+    done = run(system, np.linspace(0.0, 0.1, 11), 2.0, position=[0.5], velocity=[1.0], ports=True)
+    load, friction = done.ports["joint"][2][0], done.ports["joint"][3][0]
+    acceleration = 2.0 - 0.4 * np.sin(0.5)  # at an inertia of 1, but for the friction
+    assert load == pytest.approx(2.0 - share * acceleration, rel=1e-12)
+    assert friction == pytest.approx(0.05 * load, rel=1e-12)
+
+
+def test_friction_sits_amid_the_inertia_unless_stated():
+    system = joint(("joint:load_dependence",), joint_load_dependence=0.05)
+    assert system.parameters["motor_inertia_share"] == 0.5
+    assert "motor_inertia_share" not in joint().parameters
+
+
 def test_asymmetry_brakes_more_one_way():
     t = np.linspace(0.0, 1.0, 11)
     system = joint(

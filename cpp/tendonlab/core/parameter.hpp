@@ -35,8 +35,9 @@ constexpr const char* word(Purpose purpose) {
 /// What a parameter is to every system that has one, whatever the system calls it.
 enum class ParameterRole {
   none,
-  command_gain,  ///< effort per unit of the command
-  payload        ///< largest effort of gravity on the joint, which a load that the joint carries adds to
+  command_gain,        ///< effort per unit of the command
+  payload,             ///< largest effort of gravity on the joint, which a load that the joint carries adds to
+  motor_inertia_share  ///< where friction that depends on the load sits; half of the inertia on each side unless stated
 };
 constexpr const char* word(ParameterRole role) {
   switch (role) {
@@ -46,6 +47,8 @@ constexpr const char* word(ParameterRole role) {
       return "command_gain";
     case ParameterRole::payload:
       return "payload";
+    case ParameterRole::motor_inertia_share:
+      return "motor_inertia_share";
   }
   return nullptr;
 }
@@ -61,6 +64,13 @@ struct Parameter {
   double typical, lower, upper;
   std::string_view meaning;
   ParameterRole role;
+  std::string_view effect = {};  ///< of a system's own parameter: the effect that alone reads it; none: always read
+
+  constexpr Parameter of_effect(std::string_view only) const {
+    Parameter tied = *this;
+    tied.effect = only;
+    return tied;
+  }
 };
 template <class Owner, class Field>
 constexpr Parameter<Owner, Field> parameter(Field Owner::*field, std::string_view name, Dimension dimension,

@@ -31,7 +31,10 @@ Describe::Describe(SystemFacts of) : system(std::move(of)) {
 }
 
 void Describe::add_own(const std::vector<ParameterInfo>& parameters) {
-  for (const ParameterInfo& p : parameters) description.parameter_of_field.push_back(add({}, p));
+  for (const ParameterInfo& p : parameters) {
+    description.parameter_of_field.push_back(description.info.parameters.size());
+    description.info.parameters.push_back(p);
+  }
 }
 
 /// In the order of the walk (assemble.hpp): each element with ports once, and again for the effort that it passes on.
@@ -83,6 +86,11 @@ void Describe::add_law(const LawFacts& law) {
     else if (!is_structural(holding))  // structural effects are always there
       effect.needs.push_back(holding);
   }
+  for (ParameterInfo& p : description.info.parameters)
+    if (p.element.empty() && p.effect == name) {  // of the system, read by this effect alone
+      p.element = element, p.effect = law.name;
+      effect.parameters.push_back(p.name);
+    }
   description.info.effects.push_back(std::move(effect));
 }
 

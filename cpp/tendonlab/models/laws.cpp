@@ -10,7 +10,8 @@
 namespace tendonlab {
 ParameterInfo own_parameter(const Row& p) {
   const std::string name(p.name);
-  return {name, {}, {}, name, p.dimension, p.purpose, p.role, p.typical, p.lower, p.upper, std::string(p.meaning)};
+  return {name,    {},      std::string(p.effect), name, p.dimension, p.purpose, p.role, p.typical,
+          p.lower, p.upper, std::string(p.meaning)};
 }
 
 namespace {

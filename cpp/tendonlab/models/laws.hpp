@@ -54,7 +54,7 @@ struct Row {
   Purpose purpose;
   ParameterRole role;
   double typical, lower, upper;
-  std::string_view meaning;
+  std::string_view meaning, effect;
 };
 /// The parameter under its own name, in no element.
 ParameterInfo own_parameter(const Row& p);
@@ -63,7 +63,8 @@ template <class Owner>
 std::vector<ParameterInfo> own_parameters() {
   std::vector<ParameterInfo> all;
   for_each_parameter<Owner>([&](const auto& p) {
-    all.push_back(own_parameter({p.name, p.dimension, p.purpose, p.role, p.typical, p.lower, p.upper, p.meaning}));
+    all.push_back(
+        own_parameter({p.name, p.dimension, p.purpose, p.role, p.typical, p.lower, p.upper, p.meaning, p.effect}));
   });
   return all;
 }

@@ -23,7 +23,7 @@ struct RigidJoint : SystemDefaults {
   Chain<T, loading::All> load;
   Chain<T, actuation::All> actuation;
   std::array<Chain<T, sensing::All>, 2> sensor;
-  T inertia, gravity_torque, torque_constant;
+  T inertia, gravity_torque, torque_constant, motor_inertia_share;
   std::array<T, dof> inverse_inertia;
   T lever[1][dof];
 
@@ -32,7 +32,8 @@ struct RigidJoint : SystemDefaults {
                                 inf, "inertia of everything that moves"),
                       parameter(&RigidJoint::gravity_torque, "gravity_torque", Dimension::effort, Purpose::structure,
                                 0.0, -inf, inf, "gravity torque at 90 degrees", ParameterRole::payload),
-                      command_gain(&RigidJoint::torque_constant)};
+                      command_gain(&RigidJoint::torque_constant),
+                      systems::motor_inertia_share(&RigidJoint::motor_inertia_share)};
   }
   void prepare() {
     inverse_inertia[0] = 1.0 / inertia;
@@ -44,7 +45,7 @@ struct RigidJoint : SystemDefaults {
   Coupling<S, 1, 1> couple(const Motion<S, 1>& at, const Modes& mode, const Inputs& in) const {
     const S motor = actuation.apply(S(torque_constant * in.command(at)));
     const S gravity = gravity_torque * sin(at.position[0]), known = load.apply(in.template input<1>(at.time));
-    return single_joint(at, mode[0], motor, gravity, known);
+    return single_joint(at, mode[0], motor, gravity, known, motor_inertia_share);
   }
   template <class S, class Force, class PortAt>
   std::array<S, 2> observe(const Motion<S, 1>& at, const Force&, const PortAt&) const {

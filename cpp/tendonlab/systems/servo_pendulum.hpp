@@ -34,6 +34,7 @@ struct ServoPendulum : SystemDefaults {
   Chain<T, actuation::All> actuation;
   std::array<Chain<T, sensing::All>, 2> sensor;
   T inertia, armature, gravity_torque, torque_constant, resistance, proportional_gain, voltage_limit, angle_offset;
+  T motor_inertia_share;
   std::array<T, dof> inverse_inertia;
   T torque_per_voltage;
   T lever[1][dof];
@@ -57,7 +58,8 @@ struct ServoPendulum : SystemDefaults {
         own(&P::voltage_limit, "voltage_limit", Dimension::voltage, 1.0, 0.0,
             "largest voltage where supply_voltage is not logged"),
         own(&P::angle_offset, "angle_offset", Dimension::displacement, 0.0, -inf,
-            "how much more the servo reads than the joint's angle")};
+            "how much more the servo reads than the joint's angle"),
+        systems::motor_inertia_share(&P::motor_inertia_share)};
   }
   void prepare() {
     inverse_inertia[0] = 1.0 / (inertia + armature);
@@ -70,7 +72,7 @@ struct ServoPendulum : SystemDefaults {
     S motor = actuation.apply(torque(at, in));
     if (in.template given<2>()) motor = in.template input<2>(at.time) * motor;
     const S gravity = gravity_torque * sin(at.position[0]), known = load.apply(S{});
-    return single_joint(at, mode[0], motor, gravity, known);
+    return single_joint(at, mode[0], motor, gravity, known, motor_inertia_share);
   }
   template <class S, class Force, class PortAt>
   std::array<S, 2> observe(const Motion<S, 1>& at, const Force&, const PortAt&) const {

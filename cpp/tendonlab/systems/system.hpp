@@ -37,15 +37,23 @@ constexpr auto command_gain(T System::*field) {
   return parameter(field, "torque_constant", Dimension::effort_per_command, Purpose::structure, 1.0, -inf, inf,
                    "effort per unit of the command; known unless sd says otherwise", ParameterRole::command_gain);
 }
-/// One joint that a motor turns against gravity, with what is known to act on it. Its friction sees the mean of what
-/// the motor delivers and the load takes.
-template <class S>
+/// Where the friction of a single joint sits between motor and load: 0 at the motor's shaft, where all effort of the
+/// motor passes, 1 at the load. Only friction that depends on the load reads it.
+template <class System, class T>
+constexpr auto motor_inertia_share(T System::*field) {
+  return parameter(field, "motor_inertia_share", Dimension::ratio, Purpose::shape, 0.5, 0.0, 1.0,
+                   "share of the inertia on the motor's side of the friction", ParameterRole::motor_inertia_share)
+      .of_effect("joint:load_dependence");
+}
+/// One joint that a motor turns against gravity, with what is known to act on it. Its friction sees what the motor
+/// delivers less what the inertia on the motor's side takes.
+template <class S, class T>
 Coupling<S, 1, 1> single_joint(const Motion<S, 1>& at, const Plain<S>& direction, const S& motor, const S& gravity,
-                               const S& known) {
+                               const S& known, const T& motor_inertia_share) {
   Coupling<S, 1, 1> c;
   c.port[0].velocity = at.velocity[0];
   c.port[0].position = at.position[0];
-  c.port[0].load = 0.5 * (motor + gravity - known);
+  c.port[0].load = motor - motor_inertia_share * (motor - gravity + known);
   c.port[0].direction = direction;
   c.applied[0] = motor - gravity + known;
   return c;

@@ -68,7 +68,8 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
     if system.info.steady or (logs := read_logs(dataset, system.info, marked := marks(dataset))) is None:
         return ()
     own = [name for effect in system.effects for name in system.info.effect(effect).parameters]
-    added = {name: NominalParameter(value=system.parameters[name]) for name in own if name in system.parameters}
+    amplitudes = [name for name in own if name in system.parameters and system.info.parameter(name).amplitude]
+    added = {name: NominalParameter(value=system.parameters[name]) for name in amplitudes}
     free = replace(dataset, parameters={**added, **dataset.parameters})
     return tuple(finding for finding in _clocks(Equation(free, system), logs, marked)[0] if finding.blocks)
 

@@ -7,8 +7,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tendonlab.checking.check import check, late_experiments
-from tendonlab.checking.finding import Check
+from tendonlab.checking.check import check
 from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.diagnosis.answer.answer import answer
@@ -16,6 +15,7 @@ from tendonlab.diagnosis.answer.confirm import confirmed
 from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
 from tendonlab.diagnosis.holding import straight_inputs
+from tendonlab.diagnosis.late import checked_again
 from tendonlab.diagnosis.search.select import Search, select_effects
 from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
@@ -37,8 +37,6 @@ NO_REPEAT = (
     "which follows the logged motion."
 )
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
-
-LATE = "The check of the logs alone saw no late experiment: the lag shows once {} is simulated."
 
 log = logging.getLogger("tendonlab")
 
@@ -75,7 +73,7 @@ def diagnose(
     _require_samples(dataset, system)
     with open_workshop(names, progress=progress) as shop:
         search, nominal, loop, doubts = _search(dataset, system, shop)
-        found = _checked_again(found, dataset, search)
+        found = checked_again(found, dataset, search)
         if found.blocks and not force:
             return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
         why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
@@ -122,15 +120,6 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search,
     search = confirmed(select_effects(fitter, tuned, shop), shop)
     log.info("selected %s", search.selected)
     return search, nominal, loop
-
-
-def _checked_again(found: Check, dataset: Dataset, search: Search) -> Check:
-    """What the check `found`, with the experiments that are late once the effects named are simulated."""
-    if found.blocks or not search.selected:
-        return found
-    late = late_experiments(dataset, search.final.system)
-    notes = (*found.notes, LATE.format(" and ".join(search.selected))) if late else found.notes
-    return replace(found, findings=(*late, *found.findings), notes=notes)
 
 
 def _require_samples(dataset: Dataset, system: System) -> None:

@@ -1,5 +1,6 @@
 """What is free in a fit and what is believed of it beforehand: the user's `sd`, else the library's defaults, scaled to
-the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 3 of their unit, shapes 0.7 in log)."""
+the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 3 of their unit, shapes 0.7 in log,
+fractions 0.3)."""
 
 from __future__ import annotations
 
@@ -19,6 +20,7 @@ from tendonlab.simulation.system import System
 
 OF_TORQUE = ("inertia", "effort", "damping", "stiffness")  # dimensions that scale with all torques
 LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 3.0
+FRACTION_SD = 0.3  # of a shape that lies between 0 and 1
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,11 @@ def known_by_default(p: ParameterInfo, value: float) -> bool:
     return usual or (value == 0.0 and p.typical == 0.0)
 
 
+def is_fraction(p: ParameterInfo) -> bool:
+    """Whether a parameter is a shape between 0 and 1, both included: no logarithm suits it."""
+    return p.purpose == "shape" and (p.lower, p.upper) == (0.0, 1.0)
+
+
 def default_log_sd(p: ParameterInfo) -> float:
     """Prior sd of the logarithm of a parameter that is stated without an `sd`."""
     return DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
@@ -146,7 +153,9 @@ def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, s
             upper=upper,
         )
 
-    if p.lower >= 0 and stated.value > 0:
+    if is_fraction(p) and stated.sd is None:
+        return free(FRACTION_SD, stated.value / FRACTION_SD, 1.0)
+    if p.lower >= 0 and stated.value > 0 and not is_fraction(p):
         sd = default_log_sd(p) if stated.sd is None else stated.sd / stated.value
         return free(stated.value, 0.0, sd, log=True)
     usual = max(AMPLITUDE_SD * scale, LOG_SD * abs(stated.value))
@@ -156,7 +165,13 @@ def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, s
 
 
 def _effect_parameter(index: int, p: ParameterInfo, scale: float, value: float) -> Free:
-    """By its logarithm, if it is a shape that is typically positive."""
+    """By its logarithm, if it is a shape that is typically positive and no fraction."""
+    if is_fraction(p):
+        mean = p.typical / FRACTION_SD
+        return Free(
+            name=p.name, index=index, log=False, scale=FRACTION_SD, start=value, mean=mean, sd=1.0,
+            lower=p.lower, upper=p.upper,
+        )  # fmt: skip
     logarithm = p.purpose == "shape" and p.typical > 0
     return Free(
         name=p.name, index=index, log=logarithm, scale=scale, start=value, mean=0.0,

@@ -14,6 +14,7 @@ __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInf
 
 AXES = ("rotary", "linear")
 LEVEL, FACTOR, MEMORY, REFINES, WHOLE, SIGNAL = 2, 4, 16, 32, 64, 256  # roles of laws, as core/law.hpp numbers them
+DEFAULTED = ("command_gain", "motor_inertia_share")  # roles of parameters that are typical unless stated
 DIMENSIONS = _core.dimensions()
 PORT_QUANTITIES = tuple(_core.port_quantities())  # that can be recorded of each port
 Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)
@@ -51,7 +52,7 @@ class SystemInfo(_core.SystemInfo):
         return (*self.inputs, *self.outputs)
 
     def with_role(self, role: str) -> ParameterInfo | None:
-        """The parameter in that role, "command_gain" or "payload"; None where the system has none."""
+        """The parameter in that role: "command_gain", "payload", "motor_inertia_share"; None where there is none."""
         return next((p for p in self.parameters if p.role == role), None)
 
     @property

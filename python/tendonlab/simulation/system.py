@@ -15,6 +15,7 @@ from tendonlab.arguments import choice, interval_text, within
 from tendonlab.errors import ParameterError, expected_one_of
 from tendonlab.simulation.catalog import (
     AXES,
+    DEFAULTED,
     LEVEL,
     MEMORY,
     PORT_QUANTITIES,
@@ -57,7 +58,7 @@ class System:
             if name not in known:
                 offer = expected_one_of(name, known)
                 raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
-        usual = [p for p in self.info.parameters if p.purpose == "condition" or p.role == "command_gain"]
+        usual = [p for p in self.info.parameters if p.purpose == "condition" or p.role in DEFAULTED]
         given = {**{p.name: p.typical for p in usual if p.name in known}, **self.parameters}
         self._require_all(known, given)
         checked = FrozenNumbers({name: self._within(name, value) for name, value in given.items()})

@@ -125,11 +125,9 @@ def effort_column(system: System, name: str, velocity: np.ndarray) -> np.ndarray
     """Drive effort per unit of one amplitude: the force of its own law, everything else switched off."""
     p = system.info.parameter(name)
     effect = system.info.effect(f"{p.element}:{p.effect}")
-    own = {q: system.parameters[q] for q in effect.parameters}
-    switched = {
-        system.info.parameter(q).own: HALF if q == name else 0.0 if system.info.parameter(q).amplitude else value
-        for q, value in own.items()
-    }
+    of_law = {p.name for p in effect.law.parameters}  # an effect may read parameters of the system as well
+    rows = [q for q in map(system.info.parameter, effect.parameters) if q.own in of_law]
+    switched = {q.own: HALF if q.name == name else 0.0 if q.amplitude else system.parameters[q.name] for q in rows}
     if (effect.group, effect.effect) == ("actuation", "offset"):
         return np.full_like(velocity, -effort_per_command(system))
     if effect.group != "friction":

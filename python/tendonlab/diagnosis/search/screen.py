@@ -6,7 +6,7 @@ of the change in its residuals gives the gain that a refit may be expected to br
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from tendonlab.diagnosis.search.swap import can_replace, extended
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, solved
-from tendonlab.fitting.priors import AMPLITUDE_SD, start_of
+from tendonlab.fitting.priors import AMPLITUDE_SD, is_fraction, start_of
 from tendonlab.fitting.problem import Fitter
 from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
 from tendonlab.simulation.prepare import Replay
@@ -116,11 +116,10 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     if info.effect(effect).roles & WHOLE:
         return _whole(case, base, effect, rows)
     start = start_of(base.system, effect, case.scales)
-    shapes = [p.name for p in rows if p.purpose == "shape"]
+    shape = next((p for p in rows if p.purpose == "shape"), None)
     tried = [
         (p, amplitude, {**start, **shaped, p.name: amplitude * _unit(case, p)})
-        for factor in (SHAPES if shapes else (1.0,))
-        for shaped in ({name: start[name] * factor for name in shapes[:1]},)
+        for shaped in (_shapes(shape, start) if shape else ({},))
         for p in rows if p.amplitude
         for amplitude in (DELAYS if p.dimension == "time" else AMPLITUDES)
     ]  # fmt: skip
@@ -134,7 +133,7 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     promised = scores[0].gain
     if any(p.dimension == "time" for p in rows):
         scores = _best_when_simulated(fitter, base, effect, scores)
-    return Screened(effect, promised, _starts(scores, shapes[:1]), max(s.visibility for s in scores))
+    return Screened(effect, promised, _starts(scores, shape), max(s.visibility for s in scores))
 
 
 def _whole(case: Case, base: Fitted, effect: str, rows: Sequence[ParameterInfo]) -> Screened:
@@ -148,10 +147,17 @@ def _whole(case: Case, base: Fitted, effect: str, rows: Sequence[ParameterInfo])
     return Screened(effect, most, starts, most)
 
 
-def _starts(scores: list[_Score], shape: list[str]) -> tuple[dict[str, float], ...]:
+def _shapes(shape: ParameterInfo, start: Mapping[str, float]) -> list[dict[str, float]]:
+    """Values of the first shape of an effect to try: multiples of what is typical, or from end to end of a fraction."""
+    typical = start[shape.name]
+    tried = (shape.lower, typical, shape.upper) if is_fraction(shape) else [typical * factor for factor in SHAPES]
+    return [{shape.name: value} for value in tried]
+
+
+def _starts(scores: list[_Score], shape: ParameterInfo | None) -> tuple[dict[str, float], ...]:
     """The best start, and the best one of another shape where the effect has one."""
     best = scores[0].start
-    others = [s.start for s in scores[1:] if any(s.start[name] != best[name] for name in shape)]
+    others = [s.start for s in scores[1:] if shape and s.start[shape.name] != best[shape.name]]
     return (best, *others[:1])
 
 
