@@ -12,7 +12,7 @@ from checking.pendulum import CONSTANT, COULOMB, GRAVITY, INERTIA, MOTIONS, VISC
 from tendonlab.checking.check import check
 from tendonlab.checking.clocks import SCANNED
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.lags import _by_prescribed, _mended, _saved, _steps, _weights, lags
+from tendonlab.checking.lags import _by_place, _by_prescribed, _mended, _saved, _spoilt, _steps, _weights, lags
 from tendonlab.checking.logs import read_logs
 from tendonlab.checking.regression import FREEDOM, Fit, Unknown
 from tendonlab.checking.terms import Terms
@@ -166,3 +166,25 @@ def test_lags_of_a_late_run_mend_an_equation(own: list[list[float]], mended: lis
     common: Any = SimpleNamespace(residual=np.array([[20.0, 1.0, 3.0], [20.0, 1.5, 3.0]]))
     with_lags: Any = SimpleNamespace(residual=np.array(own))
     assert list(_mended(with_lags, common, np.arange(3), 3)) == mended
+
+
+def test_what_ripples_with_the_angle_in_all_experiments_is_no_lag_of_one() -> None:
+    """A map learnt from the others foretells the torque of a cogging motor, not that of a late run."""
+    rng, run = np.random.default_rng(4), np.repeat([0, 1, 2, 3], 2000)
+    angle = np.concatenate([rng.uniform(-9.0, 9.0, 6000), np.linspace(0.0, 6.0, 2000)])
+    equation: Any = SimpleNamespace(moved=("a",))
+    logs: Any = SimpleNamespace(run=run, moving={"a": np.stack([angle, np.ones_like(angle)])})
+    noise, ripple = 0.3 * rng.standard_normal(8000), np.sin(7.0 * angle)
+    everywhere, alone = (noise + ripple)[None], (noise + ripple * (run == 3))[None]
+    assert _by_place(equation, logs, everywhere, 3, np.array([1.0])) > 0.5 * float(np.sum(np.log1p(ripple[6000:] ** 2)))
+    assert _by_place(equation, logs, alone, 3, np.array([1.0])) < 20.0
+
+
+def test_a_lag_that_spoils_an_equation_is_none() -> None:
+    before, run = np.ones((2, 300)), np.repeat([0, 1, 2], 100)
+    logs: Any = SimpleNamespace(run=run)
+    after = before * np.where(run == 1, 0.5, 1.0)
+    assert not _spoilt((logs, before), (logs, after), 1)
+    after[1, run == 1] = 1.3
+    assert _spoilt((logs, before), (logs, after), 1)
+    assert not _spoilt((logs, before), (logs, after), 0)

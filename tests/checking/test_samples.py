@@ -112,6 +112,17 @@ def test_both_limits_of_a_command_are_one_note(tmp_path: Path) -> None:
     assert "and at −0.8 A for" in note.detail
 
 
+def test_an_angle_that_its_sensor_cuts_off_is_noted_where_experiments_share_the_limit(tmp_path: Path) -> None:
+    """A motion that rests at its farthest in one experiment alone is at no limit."""
+    swings = [np.sin(0.8 * TIME) + 1e-4 * np.random.default_rng(k).standard_normal(len(TIME)) for k in range(2)]
+    cut = [(TIME, np.minimum(q, 0.75), CURRENT * (1 + 0.1 * k)) for k, q in enumerate(swings)]
+    notes = [f for f in found(tmp_path, *cut) if f.problem == "saturation"]
+    assert [(f.signal, f.experiment) for f in notes] == [("joint_angle", "run_1"), ("joint_angle", "run_2")]
+    assert "joint_angle stays at 0.75 rad for" in notes[0].detail
+    alone = [cut[0], (TIME, 0.6 * swings[1], CURRENT * 1.1)]
+    assert [f for f in found(tmp_path, *alone) if f.problem == "saturation"] == []
+
+
 def test_a_smooth_step_that_rests_is_at_no_limit(tmp_path: Path) -> None:
     """It slows down before it rests; a command that is cut off does not, also where it is logged in steps."""
     phase = np.clip(TIME % 2.0 - 0.3, 0.0, 1.0)

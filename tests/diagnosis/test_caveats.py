@@ -30,7 +30,10 @@ def said(
     outlier: OutlierRun | None = None,
 ) -> tuple[str, ...]:
     """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
-    free: Any = SimpleNamespace(name="inertia", log=True, scale=0.02, value=lambda x: 0.02 * float(np.exp(x)))
+    sd = ((stated and stated.sd) or 0.002) / 0.02
+    free: Any = SimpleNamespace(
+        name="inertia", log=True, scale=0.02, mean=0.0, sd=sd, value=lambda x: 0.02 * float(np.exp(x))
+    )
     at = np.log1p(0.1 * x) if x > -10.0 else -140.0
     final: Any = SimpleNamespace(free=[free], x=[at], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2"))
     time = np.linspace(0.0, 20.0 * np.pi, 4001)
@@ -62,6 +65,14 @@ def test_nothing_is_said_where_all_is_well() -> None:
 def test_a_parameter_far_from_its_stated_value_is_named() -> None:
     (text,) = said(x=-4.4)
     assert text == "Inertia was fitted at 0.0112 kg·m²: 4 standard deviations from the stated 0.02 ± 0.002."
+
+
+def test_a_value_that_is_known_to_a_factor_is_far_by_its_logarithm() -> None:
+    """Stated to half of itself: six times as large is 10 of these linearly, 3.6 as the fit believes."""
+    broad = NominalParameter(0.02, 0.01)
+    assert said(x=50.0, stated=broad) == ()  # 6 times the value
+    (text,) = said(x=200.0, stated=broad)
+    assert "6 standard deviations from the stated 0.02 ± 0.01" in text  # ln 21 over 0.5
 
 
 @pytest.mark.parametrize("sd", [None, 0.0, np.inf])

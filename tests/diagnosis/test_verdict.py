@@ -89,6 +89,14 @@ def test_friction_that_follows_the_session_is_nothing_that_the_library_has(repea
     assert found.probability["unknown_effect"] > 0.5
 
 
+def test_held_out_experiments_at_the_floor_are_no_answer_while_training_ones_are_far() -> None:
+    near = Levels(nominal=1.05, tuned=1.0, refitted=1.0, explained=None, left=1.0, repeated=False)
+    assert decide((), (), near).verdict == "no_gap"
+    found = decide((), (), replace(near, trained=12.0))
+    assert found.verdict == "unknown_effect"
+    assert found.probability["no_gap"] < found.probability["unknown_effect"]
+
+
 @pytest.mark.parametrize("repeated", [False, True])
 def test_an_effect_beside_friction_that_follows_the_session_is_not_the_whole_answer(repeated: bool) -> None:
     rounds = (contest((), "a", a=0.99, none=0.01),)

@@ -8,7 +8,8 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.fitting.noise import noise_of
-from tendonlab.fitting.thinning import local_parabolas, thinned
+from tendonlab.fitting.thinning import _means, local_parabolas, thinned
+from tendonlab.simulation.catalog import system_info
 from tendonlab.simulation.reading import white_noise_sd
 from tendonlab.simulation.records import Experiment
 
@@ -232,3 +233,17 @@ def test_a_sensor_that_is_read_at_few_stamps_is_not_lost(rig):
     assert np.isnan(local_parabolas(TIME, sparse.to_numpy(), 10).values).all()
     _, few = thin(rig, joint_angle=sparse)
     assert few.data["joint_angle"].count() > 400
+
+
+def test_a_drive_that_rests_under_a_reading_that_flickers_rests_after_thinning():
+    """Means of a flickering reading would move the bristles that the drive bends to and fro."""
+    step = 4.8e-5
+    angle = np.interp(TIME, [0.0, 1.0, 2.0, 4.0], [0.0, 0.0, 0.3, 0.3])
+    read = step * np.round((angle + 0.3 * step * np.random.default_rng(2).normal(size=len(TIME))) / step)
+    run = Experiment(name="run", data=pd.DataFrame({"driver_angle": read}, index=pd.Index(TIME, name="t")))
+    driver, held = system_info("ccsrm").inputs[0], TIME[:-1:10] > 2.1
+    means = _means(run, driver, 10)[:-1]
+    assert np.mean(np.abs(np.diff(means[held])) < 1e-9) > 0.95  # rests end where noise hides their end
+    assert means[held][0] == pytest.approx(0.3, abs=step)
+    moving = (TIME[:-1:10] > 1.1) & (TIME[:-1:10] < 1.9)
+    assert means[moving] == pytest.approx(np.interp(TIME[:-1:10] + 0.005, TIME, angle)[moving], abs=step)

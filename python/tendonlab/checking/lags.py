@@ -19,10 +19,12 @@ GROWTH = 1.15  # from one lag that is tried to the next
 FAR = 3  # steps from the common lag at which only another clock is likely to suit an experiment better
 OWN = 3.0  # nats by which a lag of its own must suit an experiment better than the common one, to start the search
 SCATTER = 0.02  # of the rms effort: sd of dry friction from run to run
+CELLS = 96  # of a map over a turn
 BENDS = (0.03, 0.1, 0.2, 0.4, 1.0)  # shares of the travel by which bristles may bend before they slide
 RESOLVED = 0.25  # of a sample: no lag is known better
 MOST_ROUNDS, CLOSE = 40, 0.1  # of Gauss and Newton: at most so many, until all steps are below this share of the error
 ROUNDS = 12  # of a robust regression
+SPOILT = 1.15  # growth of what an equation leaves of an experiment (rms) that no lag explains
 MENDED = 0.96  # share of what an equation leaves of an experiment (rms) that its own lags must at most leave
 
 
@@ -108,7 +110,8 @@ def _gain(
     if equation.axes:
         for i in np.flatnonzero(gained).tolist():
             bent = _by_bristles(equation, moved, left, i, share) + _by_prescribed(equation, moved, left, i, share)
-            if gained[i] <= 0.5 * (FREEDOM + 1) * bent:
+            placed = _by_place(equation, moved, left, i, share)
+            if gained[i] <= 0.5 * (FREEDOM + 1) * max(bent, placed):
                 gained[i] = 0.0
         return np.asarray(gained)
     velocity = sliding(equation, moved, 0)
@@ -207,8 +210,16 @@ def _scanned(equation: Equation, logs: Logs) -> tuple[np.ndarray, np.ndarray]:
     far = inside & (np.abs(tried[best] - tried[common]) >= FAR) & (gained > own) & bool(equation.moved)
     alike = np.ones(len(at.size))
     far &= [bool(far[i]) and gained[i] > _by_bristles(equation, *there, i, alike) for i in range(num)]
+    far &= [bool(far[i]) and not _spoilt(there, earlier(int(tried[best[i]])), i) for i in range(num)]
     nats = 0.5 * (FREEDOM + 1) * ROUGH_SHARE * gained
     return np.where(inside, tried[best], 0) * logs.step, np.where(far, nats, 0.0)
+
+
+def _spoilt(common: tuple[Logs, np.ndarray], own: tuple[Logs, np.ndarray], experiment: int) -> bool:
+    """Whether a lag of its own makes any equation of an experiment err more (rms): outputs that are late together are
+    late in all equations; torque that ripples along a ramp resembles a lag in one."""
+    before, after = (np.sum(np.square(left[:, logs.run == experiment]), axis=1) for logs, left in (common, own))
+    return bool(np.any(after > SPOILT**2 * before))
 
 
 def _by_friction(equation: Equation, logs: Logs, left: np.ndarray) -> np.ndarray:
@@ -245,6 +256,20 @@ def _by_prescribed(equation: Equation, logs: Logs, left: np.ndarray, experiment:
     velocity = logs.driving[equation.prescribed[0]][0, here]
     columns = np.stack([np.ones_like(velocity), np.sign(velocity)], axis=1)
     return float(share @ [_saved(row[here], columns) for row in left])
+
+
+def _by_place(equation: Equation, logs: Logs, left: np.ndarray, experiment: int, share: np.ndarray) -> float:
+    """By how much a map over the place in a turn, learnt from the other experiments, lowers the surprise of one, of
+    each equation by its `share`: along a slow motion, torque that ripples with the angle resembles a lag."""
+    here, saved = logs.run == experiment, 0.0
+    for k, name in enumerate(equation.moved if here.any() else ()):
+        cell = np.floor(logs.moving[name][0] * (CELLS / (2.0 * np.pi))).astype(int) % CELLS
+        weight = np.where(here, 0.0, 1.0 / (1.0 + left[k] ** 2))
+        learnt = np.bincount(cell, weight * left[k], CELLS) / np.maximum(np.bincount(cell, weight, CELLS), 1.0)
+        foretold = learnt[cell[here]]
+        if foretold @ left[k, here] > 0.0:
+            saved = max(saved, float(share[k]) * _saved(left[k, here], foretold[:, None]))
+    return saved
 
 
 def _friction(speed: np.ndarray) -> np.ndarray:

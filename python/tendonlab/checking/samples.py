@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -17,6 +18,8 @@ from tendonlab.simulation.reading import common_step, rounding_step, white_noise
 GAP = 1.5  # median steps between two stamps that make a gap
 JITTER, DRIFT = 0.02, 0.01  # relative: scatter of steps, and change of their median from the first to the last quarter
 LEAST_STEPS = 8  # of a record whose stamps are judged
+EFFORTS = ("command", "effort", "voltage", "force")  # dimensions that saturate
+MOTIONS = ("displacement", "angle", "flow", "speed")  # dimensions whose sensors do
 PLATEAU, LEAST_RUN = 0.01, 5  # share of samples at an extreme, and samples in a row, that make a limit
 SLOWED = 0.25  # of its usual change: a signal that changes less beside its stays eases into them
 COARSE = 4.0  # times its noise that a step of a reading must be to matter
@@ -32,8 +35,8 @@ def sample_findings(dataset: Dataset, marked: Marks | None = None) -> list[Findi
     for experiment in dataset.experiments:
         found += [] if steady else [*_stamps(experiment), *_spikes(dataset, experiment, marked)]
         found += _standing(dataset, experiment)
-        found += [] if steady else _limits(dataset, experiment)
-    return [*found, *([] if steady else [*_jitter(dataset), *_steps(dataset), *held_findings(dataset)])]
+    found += [] if steady else [*_limits(dataset), *_jitter(dataset), *_steps(dataset), *held_findings(dataset)]
+    return found
 
 
 def _jitter(dataset: Dataset) -> Iterator[Finding]:
@@ -114,23 +117,34 @@ def _why_dead(dataset: Dataset, experiment: Experiment, name: str) -> str:
     return ""
 
 
-def _limits(dataset: Dataset, experiment: Experiment) -> Iterator[Finding]:
+def _limits(dataset: Dataset) -> Iterator[Finding]:
+    """Signals that stay at an extreme. A motion may rest at its farthest: only an extreme that it shares with another
+    experiment is a limit."""
     dimensions = {s.name: s.dimension for s in dataset.system().info.signals}
-    for name in experiment.data.columns:
-        if dimensions.get(name) not in ("command", "effort", "voltage", "force"):
+    for name in dataset.signals:
+        if dimensions.get(name) not in (*EFFORTS, *MOTIONS):
             continue
-        values = experiment.data[name].to_numpy(dtype=float)
-        values = values[np.isfinite(values)]
-        if len(np.unique(values)) < len(values) // 10:
-            continue  # a command of few levels
-        stays = {float(edge): values == edge for edge in (values.max(), values.min())}
-        stays = {edge: at for edge, at in stays.items() if at.mean() > PLATEAU and _longest(at) >= LEAST_RUN}
-        stays = {edge: at for edge, at in stays.items() if _is_met_at_speed(values, at)}
-        if stays:
-            unit = unit_text(dataset.signals[name].si_unit)
-            shares = (f"at {number(e)} {unit} for {100 * at.mean():.0f} % of the samples" for e, at in stays.items())
-            text = f"{name} stays {' and '.join(shares)}, as at a limit"
-            yield _note("saturation", text, experiment, name, sum(int(at.sum()) for at in stays.values()))
+        records = [(e, e.data[name].dropna().to_numpy(dtype=float)) for e in dataset if name in e.data.columns]
+        found = [(experiment, _stays(values)) for experiment, values in records]
+        often = Counter(edge for _, stays in found for edge in stays)
+        least = 2 if dimensions[name] in MOTIONS else 1
+        for experiment, stays in found:
+            stays = {edge: at for edge, at in stays.items() if often[edge] >= least}
+            if stays:
+                unit = unit_text(dataset.signals[name].si_unit)
+                shares = {number(edge): f"{100 * at.mean():.0f} % of the samples" for edge, at in stays.items()}
+                places = " and ".join(f"at {edge} {unit} for {share}" for edge, share in shares.items())
+                text = f"{name} stays {places}, as at a limit"
+                yield _note("saturation", text, experiment, name, sum(int(at.sum()) for at in stays.values()))
+
+
+def _stays(values: np.ndarray) -> dict[float, np.ndarray]:
+    """The extremes at which a record stays, and which of its samples do; none of a record of few levels."""
+    if len(np.unique(values)) < len(values) // 10:
+        return {}
+    stays = {float(edge): values == edge for edge in (values.max(), values.min())} if len(values) else {}
+    stays = {edge: at for edge, at in stays.items() if at.mean() > PLATEAU and _longest(at) >= LEAST_RUN}
+    return {edge: at for edge, at in stays.items() if _is_met_at_speed(values, at)}
 
 
 def _steps(dataset: Dataset) -> Iterator[Finding]:

@@ -29,6 +29,10 @@ class Confusion:
 
 
 _MOTOR_OR_JOINT = "motion that loads the cable differently: an added load, a torque chirp, one side held"
+_AT_ONE_LEVEL = (
+    "motion under which the dry friction changes, slow beside fast or light beside heavy load: an asymmetry is a "
+    "share of the friction, an offset stays; at one level of friction they are the same"
+)
 CONFUSIONS = (
     Confusion(("motor:stribeck", "joint:stribeck"), _MOTOR_OR_JOINT),
     Confusion(("motor:presliding", "joint:presliding"), _MOTOR_OR_JOINT),
@@ -38,10 +42,10 @@ CONFUSIONS = (
         "cable stretch under load; slow micro motion and standstill for the asymmetry",
         where="motor:asymmetry",
     ),
+    Confusion(("load:offset", "joint:asymmetry"), _AT_ONE_LEVEL, where="motor:asymmetry"),
     Confusion(
         ("actuation:offset", "load:offset", "joint:asymmetry"),
-        "motion under which the dry friction changes, slow beside fast or light beside heavy load: an asymmetry is a "
-        "share of the friction, an offset stays; at one level of friction they are the same",
+        _AT_ONE_LEVEL,
         unless="motor:asymmetry",
         odd="joint:asymmetry",
     ),

@@ -17,7 +17,9 @@ from tendonlab.fitting.noise import noise_of, without_rounding
 from tendonlab.fitting.replay import is_slower, opened
 from tendonlab.simulation.catalog import InputInfo
 from tendonlab.simulation.prepare import is_held
+from tendonlab.simulation.reading import noise_sd
 from tendonlab.simulation.records import Experiment, SignalSpec
+from tendonlab.simulation.rests import settled
 from tendonlab.simulation.system import System
 
 RATE = 100.0  # Hz: logs are thinned to no less
@@ -222,8 +224,11 @@ def _means(experiment: Experiment, given: InputInfo, factor: int) -> np.ndarray:
 
 
 def _impulse(experiment: Experiment, given: InputInfo) -> np.ndarray:
-    """Integral of an input up to each sample; it goes straight between samples unless held."""
+    """Integral of an input up to each sample; it goes straight between samples unless held. A motion that rests is
+    constant, though its reading flickers."""
     values = _column(experiment, given.name)
+    if given.between == "smooth":
+        values = settled(experiment.time, values, noise_sd(values))
     over = values[:-1] if is_held(experiment, given) else 0.5 * (values[1:] + values[:-1])
     return np.concatenate([[0.0], np.cumsum(over * np.diff(experiment.time))])
 

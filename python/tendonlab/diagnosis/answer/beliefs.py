@@ -10,6 +10,7 @@ from tendonlab._core import Free
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 
+BROAD = 0.3  # stated sd, of the value, beyond which the value is known to a factor, as its prior in fits has it
 VANISHED = 1e-6  # of the stated value: less says 0 on a logarithmic scale, where nothing stops a fit
 
 
@@ -32,6 +33,8 @@ def pulled(case: Case, fitted: Fitted) -> list[Pulled]:
         if stated is not None and stated.sd and np.isfinite(stated.sd):
             value = 0.0 if has_vanished(free, float(x)) else free.value(float(x))
             away = abs(value - stated.value) / stated.sd
+            if free.log and stated.sd > BROAD * stated.value:  # known to a factor
+                away = min(away, abs(float(x) - free.mean) / free.sd)
             found.append(Pulled(free.name, value, stated.value, stated.sd, away))
     return found
 

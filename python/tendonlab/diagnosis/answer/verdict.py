@@ -120,7 +120,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     noise = _noise_room(levels, selected=bool(selected))
     is_far = levels.is_far or (levels.nominal > NO_GAP and noise < 0.0)
     is_missing = levels.drifted <= RARE or (levels.repeated and is_far)
-    at_floor = not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
+    holds = levels.repeated or levels.trained < FAR_TRAINED  # a held-out motion may miss what training ones show
+    at_floor = holds and not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     whole = max(_whole(levels), NO_GAP - levels.left)
     spare = min(noise, whole, _chance_room(levels), _belief_room(levels, STRAINED_BESIDE))

@@ -170,7 +170,8 @@ def _score(
     at = -slope / (curvature + AMPLITUDE_SD**-2.0)
     at = min(max(at, p.lower / unit), p.upper / unit)
     gain = -slope * at - 0.5 * (curvature + AMPLITUDE_SD**-2.0) * at**2
-    start = p.typical if p.purpose == "share" else at * unit  # a share is held at its typical value in fits
+    value = min(max(at * unit, p.lower), p.upper)  # rounding may pass a bound
+    start = p.typical if p.purpose == "share" else value  # a share is held at its typical value in fits
     return _Score(gain, {**values, p.name: start}, 0.5 * curvature)
 
 
