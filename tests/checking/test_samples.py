@@ -26,6 +26,12 @@ def test_good_samples_have_no_finding(tmp_path: Path) -> None:
     assert found(tmp_path, (TIME, ANGLE, CURRENT)) == []
 
 
+@pytest.mark.parametrize(("num", "blocks"), [(15, True), (16, False)])
+def test_an_experiment_too_short_to_diagnose_blocks(num: int, blocks: bool, tmp_path: Path) -> None:
+    notes = [f for f in found(tmp_path, (TIME, ANGLE, CURRENT), (TIME[:num], ANGLE[:num], CURRENT[:num])) if f.blocks]
+    assert [(f.problem, f.experiment, f.count) for f in notes] == ([("sampling", "run_2", 15)] if blocks else [])
+
+
 def test_samples_that_repeat_a_stamp_are_left_out_and_counted(tmp_path: Path) -> None:
     time, angle = TIME.copy(), ANGLE.copy()
     time[[400, 401, 700]] = time[[399, 399, 699]]

@@ -201,6 +201,16 @@ def test_sentence_of_two_effects_quotes_their_set(with_effect: Diagnosis) -> Non
     assert "explanation: 0.21" in replace(both, sets=()).sentence  # the less certain of the two
 
 
+def test_an_effect_that_held_out_experiments_do_not_need_explains_no_gap(with_effect: Diagnosis) -> None:
+    shown = replace(with_effect, explained=None, indistinguishable=())
+    assert shown.sentence.startswith(
+        "The simulator lacks an effect: Stribeck friction at the joint. The training experiments show it; the held-out "
+        "ones are at the noise floor without it as well. Probability"
+    )
+    both = replace(shown, selected=("joint:stribeck", "joint:presliding"))
+    assert both.sentence.startswith("The simulator lacks two effects: ")
+
+
 def test_twins_of_a_selected_effect_are_named_and_count_with_it(with_effect: Diagnosis) -> None:
     first, second, twin = "joint:stribeck", "sensor.joint_angle:delay", "actuation:delay"
     shares = (((first, second), 0.5), ((first, twin), 0.45), ((first,), 0.02))

@@ -17,6 +17,7 @@ from tendonlab.simulation.reading import common_step, rounding_step, white_noise
 
 GAP = 1.5  # median steps between two stamps that make a gap
 JITTER, DRIFT = 0.02, 0.01  # relative: scatter of steps, and change of their median from the first to the last quarter
+FEWEST = 16  # samples of an experiment: fewer show no motion
 LEAST_STEPS = 8  # of a record whose stamps are judged
 EFFORTS = ("command", "effort", "voltage", "force")  # dimensions that saturate
 MOTIONS = ("displacement", "angle", "flow", "speed")  # dimensions whose sensors do
@@ -57,6 +58,9 @@ def _scatter(steps: np.ndarray) -> float:
 
 
 def _stamps(experiment: Experiment) -> Iterator[Finding]:
+    if (num := len(experiment.data)) < FEWEST:
+        text = f"{experiment.name} has {num} samples, and a diagnosis takes at least {FEWEST}; leave it out"
+        yield Finding(problem="sampling", experiment=experiment.name, detail=text, count=num, blocks=True)
     if experiment.num_repeated:
         text = f"{counted(experiment.num_repeated, 'sample')} left out, whose time stamp repeats the one before"
         yield _note("sampling", text, experiment, count=experiment.num_repeated)

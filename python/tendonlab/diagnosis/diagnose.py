@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tendonlab.checking.check import check
+from tendonlab.checking.samples import FEWEST
 from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset
 from tendonlab.diagnosis.answer.answer import answer
@@ -31,7 +32,6 @@ from tendonlab.simulation.system import System
 from tendonlab.threads import with_one_blas_thread
 
 UNREPEATED = 0.2  # sd of friction from run to run that no friction has: the closed loop itself does not repeat
-FEWEST = 16  # samples of an experiment: fewer show no motion
 NO_REPEAT = (
     "The closed loop does not repeat, as in a limit cycle whose phase is chance. So errors are those of an injection, "
     "which follows the logged motion."
@@ -63,6 +63,7 @@ def diagnose(
     require_dataset(dataset)
     began, seed = time.monotonic(), checked(seed)
     names = _library(dataset, library)
+    _require_samples(dataset, dataset.system() if system is None else system)
     found = check(dataset, system=system)
     if found.blocks and not force:
         used = dataset.system() if system is None else system
@@ -70,7 +71,6 @@ def diagnose(
     if any(finding.problem == "outliers" for finding in found.findings):
         dataset = without_outliers(dataset)
     system = dataset.system() if system is None else system
-    _require_samples(dataset, system)
     with open_workshop(names, progress=progress) as shop:
         search, nominal, loop, doubts = _search(dataset, system, shop)
         found = checked_again(found, dataset, search)

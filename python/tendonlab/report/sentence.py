@@ -108,11 +108,16 @@ def _effect(diagnosis: Diagnosis) -> str:
     names = diagnosis.selected
     if not names:
         return "An unmodelled effect of the library explains the gap."
-    one = len(names) == 1
-    several = f"{_COUNTS.get(len(names), len(names))} unmodelled effects explain"
-    opening = "An unmodelled effect explains" if one else several
-    tail = _shrinks(diagnosis, "from_refitted", f"Adding {'it' if one else 'them'}")
-    return f"{opening} the gap: {phrases(names, diagnosis.system)}.{_ties(diagnosis)}{tail}"
+    one, how_many = len(names) == 1, _COUNTS.get(len(names), str(len(names)))
+    said = f"{phrases(names, diagnosis.system)}.{_ties(diagnosis)}"
+    them = "it" if one else "them"
+    if diagnosis.explained is None:  # held-out experiments leave nothing to explain
+        return (
+            f"The simulator lacks {'an effect' if one else f'{how_many.lower()} effects'}: {said} The training "
+            f"experiments show {them}; the held-out ones are at the noise floor without {them} as well."
+        )
+    opening = "An unmodelled effect explains" if one else f"{how_many} unmodelled effects explain"
+    return f"{opening} the gap: {said}{_shrinks(diagnosis, 'from_refitted', f'Adding {them}')}"
 
 
 def _ties(diagnosis: Diagnosis) -> str:
