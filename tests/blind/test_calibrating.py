@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +24,9 @@ from tendonlab.diagnosis.answer.verdict import Verdict
 VERDICTS = ("data_fault", "no_gap", "parameters_only", "effect", "unknown_effect")
 
 
-def cases(count: int, *, sharpness: float, lapse: float = 0.0) -> list[Judged]:
-    """Cases whose log odds are `sharpness` times as large as they should be; a share of them has any verdict at all."""
+def cases(count: int, *, sharpness: float, lapse: float = 0.0, missed: float = 0.0) -> list[Judged]:
+    """Cases whose log odds are `sharpness` times as large as they should be; a share of them has any verdict at all,
+    and a share an effect that the evidence excludes."""
     draw = np.random.default_rng(5)
     made = []
     for _ in range(count):
@@ -36,6 +38,10 @@ def cases(count: int, *, sharpness: float, lapse: float = 0.0) -> list[Judged]:
         there = frozenset(["a:b"]) if draw.random() < chance else frozenset[str]()
         odds = sharpness * np.log(chance / (1.0 - chance))
         effects = {"a:b": float(1.0 / (1.0 + np.exp(-odds)))}
+        if draw.random() < missed:
+            there, effects = there | {"a:c"}, effects | {"a:c": 1e-6}
+        else:
+            effects |= {"a:d": 1e-6}
         told = max(evidence, key=evidence.__getitem__)
         made.append(Judged("rigid_joint", False, came, there, evidence, effects, told, runs=7))
     return made
@@ -63,6 +69,13 @@ def test_probabilities_are_true_under_the_fitted_map_on_other_cases() -> None:
 
 def test_a_share_of_cases_that_nothing_foretells_is_a_lapse() -> None:
     assert fitted(cases(3000, sharpness=1.0, lapse=0.2)).verdicts.lapse == pytest.approx(0.2, abs=0.06)
+
+
+def test_effects_that_the_evidence_excludes_are_there_as_often_as_they_were() -> None:
+    for missed in (0.0, 0.02):
+        of = fitted(cases(3000, sharpness=1.0, missed=missed)).effects
+        assert of.missed == pytest.approx(0.5 * missed, abs=0.004)  # half of them beside one that counts with them
+        assert of.of_one(0.0) == pytest.approx(of.missed, abs=1e-3)
 
 
 def test_the_most_probable_verdict_and_the_order_of_effects_stay() -> None:
@@ -108,7 +121,7 @@ def test_without_cases_to_fit_the_shipped_map_stays_and_is_confirmed_by_none() -
     content = calibrate()
     for name, repeats in (("with repeats", True), ("without repeats", False)):
         of = shipped(repeats=repeats)
-        assert content[name]["map"]["verdicts"] == {"temperature": of.verdicts.temperature, "lapse": of.verdicts.lapse}
+        assert content[name]["map"] == {"verdicts": asdict(of.verdicts), "effects": asdict(of.effects)}
         assert content[name]["fitted on"]
         assert content[name]["confirmed"] == []
 

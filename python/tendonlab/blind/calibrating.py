@@ -30,6 +30,7 @@ from .runner import REPORT, VERDICTS
 LEAST_CASES = 20  # of a kind of rig, to confirm the map there
 FALSE = 1.96  # Spiegelhalter's z beyond which probabilities are false
 USUAL, SPREAD = -2.2, 1.4  # log odds of twice the lapse that is believed before any case, 5 %, and their sd
+SELDOM = -5.3  # the same of an effect that is missed, 0.25 %
 Folders = Sequence[tuple[Path, Path]]  # truths and reports
 
 
@@ -107,26 +108,30 @@ def fitted(cases: Sequence[Judged]) -> Calibration:
     def of_effects(by: Tempering) -> float:
         return -sum(math.log(max(p if there else 1.0 - p, LEAST)) for p, there in _tempered(events, by))
 
-    return Calibration(verdicts=_best(of_verdicts), effects=_best(of_effects))
+    return Calibration(verdicts=_best(of_verdicts, misses=False), effects=_best(of_effects, misses=True))
 
 
 def _tempered(events: Iterable[tuple[float, bool]], by: Tempering) -> list[tuple[float, bool]]:
     return [(by.of_one(p), there) for p, there in events]
 
 
-def _best(surprise: Callable[[Tempering], float]) -> Tempering:
-    """The tempering of least surprise; priors: temperature 1 within a factor of e, lapse 5 % within a factor of 4."""
+def _best(surprise: Callable[[Tempering], float], *, misses: bool) -> Tempering:
+    """The tempering of least surprise; priors: temperature 1 within a factor of e, lapse 5 % and, if it `misses`
+    effects, 0.25 % of these within a factor of 4."""
+    usual = np.array([0.0, USUAL, SELDOM][: 3 if misses else 2])
+    spread = np.array([1.0, SPREAD, SPREAD][: len(usual)])
 
     def tempering(x: Array) -> Tempering:
-        return Tempering(temperature=float(np.exp(x[0])), lapse=float(0.5 * expit(x[1])))
+        lapse, missed = (0.5 * float(expit(of)) for of in (*x[1:], -np.inf)[:2])
+        return Tempering(temperature=float(np.exp(x[0])), lapse=lapse, missed=missed)
 
     def cost(x: Array) -> float:
-        return surprise(tempering(x)) + 0.5 * float(x[0] ** 2 + ((x[1] - USUAL) / SPREAD) ** 2)
+        return surprise(tempering(x)) + 0.5 * float(np.sum(np.square((x - usual) / spread)))
 
-    start = np.array([0.0, USUAL])
-    simplex = start + np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]])
-    best = tempering(minimize(cost, start, method="Nelder-Mead", options={"initial_simplex": simplex}).x)
-    return Tempering(temperature=_rounded(best.temperature), lapse=_rounded(best.lapse))
+    steps = np.diag([0.5, *(1.0 for _ in usual[1:])])
+    simplex = usual + np.vstack([np.zeros(len(usual)), steps])
+    best = tempering(minimize(cost, usual, method="Nelder-Mead", options={"initial_simplex": simplex}).x)
+    return Tempering(**{name: _rounded(value) for name, value in asdict(best).items()})
 
 
 def _rounded(value: float) -> float:

@@ -19,10 +19,12 @@ LEAST = 1e-6  # probability; evidence beyond it says no more
 
 @dataclass(frozen=True, kw_only=True)
 class Tempering:
-    """p^(1/`temperature`), normalised, less a share `lapse`: what goes wrong however clear the evidence is."""
+    """p^(1/`temperature`), normalised, less a share `lapse`: what goes wrong however clear the evidence is. `missed`:
+    probability of an effect that the evidence excludes."""
 
     temperature: float = 1.0
     lapse: float = 0.0
+    missed: float = 0.0
 
     def of(self, raw: Mapping[str, float]) -> dict[str, float]:
         """Probabilities of what excludes each other; the lapse is spread over all of them, so their order stays."""
@@ -31,9 +33,9 @@ class Tempering:
         return {name: (1.0 - self.lapse) * p / total + self.lapse / len(sharp) for name, p in sharp.items()}
 
     def of_one(self, raw: float) -> float:
-        """Probability that something is there; the lapse says that it is not."""
+        """Probability that something is there; the lapse says that it is not, `missed` that it is."""
         there, not_there = (max(p, LEAST) ** (1.0 / self.temperature) for p in (raw, 1.0 - raw))
-        return float((1.0 - self.lapse) * there / (there + not_there))
+        return float(self.missed + (1.0 - self.lapse - self.missed) * there / (there + not_there))
 
 
 @dataclass(frozen=True, kw_only=True)
