@@ -257,9 +257,9 @@ def test_fits_start_from_the_best_score_and_from_the_best_of_another_shape() -> 
         Score(8.0, {"a": 3.0, "s": 2.0}, 0.0),
         Score(7.0, {"a": 1.0, "s": 5.0}, 0.0),
     ]
-    assert _starts(scores, ["s"]) == ({"a": 1.0, "s": 2.0}, {"a": 1.0, "s": 5.0})
-    assert _starts(scores, []) == ({"a": 1.0, "s": 2.0},)
-    assert _starts(scores[:2], ["s"]) == ({"a": 1.0, "s": 2.0},)
+    assert _starts(scores, "s") == ({"a": 1.0, "s": 2.0}, {"a": 1.0, "s": 5.0})
+    assert _starts(scores, None) == ({"a": 1.0, "s": 2.0},)
+    assert _starts(scores[:2], "s") == ({"a": 1.0, "s": 2.0},)
 
 
 def test_the_gain_of_a_candidate_is_that_of_least_squares_with_the_free_parameters(

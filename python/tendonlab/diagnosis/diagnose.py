@@ -63,7 +63,7 @@ def diagnose(
     require_dataset(dataset)
     began, seed = time.monotonic(), checked(seed)
     names = _library(dataset, library)
-    _require_samples(dataset, dataset.system() if system is None else system)
+    _require_samples(dataset)
     found = check(dataset, system=system)
     if found.blocks and not force:
         used = dataset.system() if system is None else system
@@ -85,7 +85,7 @@ def diagnose(
 def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
     """The model of `dataset` that a diagnosis ends with, without its answer. Raises as `diagnose`."""
     system = dataset.system()
-    _require_samples(dataset, system)
+    _require_samples(dataset)
     with open_workshop(None, progress=progress) as shop:
         return _search(dataset, system, shop)[0].final
 
@@ -122,9 +122,9 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search,
     return search, nominal, loop
 
 
-def _require_samples(dataset: Dataset, system: System) -> None:
+def _require_samples(dataset: Dataset) -> None:
     """Raise DatasetError for an experiment too short to show a motion."""
-    for experiment in dataset.experiments if not system.info.steady else ():
+    for experiment in dataset.experiments if not dataset.system().info.steady else ():
         if (num := len(experiment.data)) < FEWEST:
             raise DatasetError(f"{experiment.name} has {num} samples: expected at least {FEWEST}; leave it out")
 

@@ -133,7 +133,7 @@ def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:
     promised = scores[0].gain
     if any(p.dimension == "time" for p in rows):
         scores = _best_when_simulated(fitter, base, effect, scores)
-    return Screened(effect, promised, _starts(scores, shape), max(s.visibility for s in scores))
+    return Screened(effect, promised, _starts(scores, shape.name if shape else None), max(s.visibility for s in scores))
 
 
 def _whole(case: Case, base: Fitted, effect: str, rows: Sequence[ParameterInfo]) -> Screened:
@@ -154,10 +154,10 @@ def _shapes(shape: ParameterInfo, start: Mapping[str, float]) -> list[dict[str, 
     return [{shape.name: value} for value in tried]
 
 
-def _starts(scores: list[_Score], shape: ParameterInfo | None) -> tuple[dict[str, float], ...]:
+def _starts(scores: list[_Score], shape: str | None) -> tuple[dict[str, float], ...]:
     """The best start, and the best one of another shape where the effect has one."""
     best = scores[0].start
-    others = [s.start for s in scores[1:] if shape and s.start[shape.name] != best[shape.name]]
+    others = [s.start for s in scores[1:] if shape and s.start[shape] != best[shape]]
     return (best, *others[:1])
 
 
