@@ -19,7 +19,12 @@ STATED = {"inertia": 1.15 * INERTIA, "gravity_torque": 0.93 * GRAVITY, "viscous"
 
 
 def swing(
-    folder: Path, torque: Callable[[float, int], float], *, coulomb: float = 0.0, of_torque: str = ""
+    folder: Path,
+    torque: Callable[[float, int], float],
+    *,
+    coulomb: float = 0.0,
+    by_gravity: float = 0.0,
+    of_torque: str = "",
 ) -> tl.Dataset:
     """Four runs of 6 s, logged at 100 Hz with noise of 0.1 mrad; the last one is held out."""
     random, time = np.random.default_rng(1), np.arange(0.0, 6.0, STEP)
@@ -33,8 +38,9 @@ def swing(
     for k, start in enumerate(STARTS):
 
         def rate(t: float, y: np.ndarray, k: int = k) -> tuple[float, float]:
-            friction = VISCOUS * y[1] + coulomb * np.tanh(y[1] / 0.002)
-            return y[1], (torque(t, k) - GRAVITY * np.sin(y[0]) - friction) / INERTIA
+            gravity = GRAVITY * np.sin(y[0])
+            friction = VISCOUS * y[1] + (coulomb + by_gravity * abs(gravity)) * np.tanh(y[1] / 0.002)
+            return y[1], (torque(t, k) - gravity - friction) / INERTIA
 
         angle = solve_ivp(rate, (0.0, 6.0), start, t_eval=time, rtol=1e-8, atol=1e-9, method="LSODA").y[0]
         logged = angle + 1e-4 * random.standard_normal(len(time))
@@ -165,3 +171,13 @@ def test_free_swings_beside_one_constant_torque_load(tmp_path: Path) -> None:
 def test_one_constant_torque_throughout_identifies_nothing(tmp_path: Path) -> None:
     with pytest.raises(tl.DatasetError, match="constant"):
         swing(tmp_path, lambda t, k: 0.4)
+
+
+@pytest.mark.cpu(30)
+def test_friction_in_proportion_to_gravity_is_named(tmp_path) -> None:
+    """Friction at the load: all inertia sits before it."""
+    why = tl.diagnose(swing(tmp_path, smooth, by_gravity=0.08), progress=False)
+    assert (why.verdict, why.selected) == ("effect", ("joint:load_dependence",))
+    (found,) = [each for each in why.effects if each.name == "joint:load_dependence"]
+    assert found.parameters["load_dependence"]["value"] == pytest.approx(0.08, rel=0.05)
+    assert found.parameters["motor_inertia_share"]["value"] > 0.9
