@@ -72,7 +72,7 @@ def test_a_value_that_is_known_to_a_factor_is_far_by_its_logarithm() -> None:
     broad = NominalParameter(0.02, 0.01)
     assert said(x=50.0, stated=broad) == ()  # 6 times the value
     (text,) = said(x=200.0, stated=broad)
-    assert "6 standard deviations from the stated 0.02 ± 0.01" in text  # ln 21 over 0.5
+    assert text.endswith("6 standard deviations from the stated 0.02 ± 0.01, in its logarithm.")  # ln 21 over 0.5
 
 
 @pytest.mark.parametrize("sd", [None, 0.0, np.inf])

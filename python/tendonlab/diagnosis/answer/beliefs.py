@@ -16,13 +16,14 @@ VANISHED = 1e-6  # of the stated value: less says 0 on a logarithmic scale, wher
 
 class Pulled(NamedTuple):
     """A parameter whose uncertainty was stated: its fitted and stated `value`, SI, the stated `sd`, and by how many of
-    these it was pulled away."""
+    these it was pulled away; `by_factor`: whether that counts in its logarithm."""
 
     name: str
     value: float
     stated: float
     sd: float
     away: float
+    by_factor: bool = False
 
 
 def pulled(case: Case, fitted: Fitted) -> list[Pulled]:
@@ -32,10 +33,9 @@ def pulled(case: Case, fitted: Fitted) -> list[Pulled]:
         stated = case.dataset.parameters.get(free.name)
         if stated is not None and stated.sd and np.isfinite(stated.sd):
             value = 0.0 if has_vanished(free, float(x)) else free.value(float(x))
-            away = abs(value - stated.value) / stated.sd
-            if free.log and stated.sd > BROAD * stated.value:  # known to a factor
-                away = min(away, abs(float(x) - free.mean) / free.sd)
-            found.append(Pulled(free.name, value, stated.value, stated.sd, away))
+            away, factor = abs(value - stated.value) / stated.sd, abs(float(x) - free.mean) / free.sd
+            by_factor = free.log and stated.sd > BROAD * stated.value and factor < away
+            found.append(Pulled(free.name, value, stated.value, stated.sd, factor if by_factor else away, by_factor))
     return found
 
 

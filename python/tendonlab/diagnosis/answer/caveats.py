@@ -43,7 +43,7 @@ def _pulled(case: Case, final: Fitted) -> list[str]:
             fitted = f"{number(of.value)} {unit_text(final.system.unit(of.name))}".rstrip()
             said.append(
                 f"{capital(words(of.name))} was fitted at {fitted}: {of.away:.0f} standard deviations from the stated "
-                f"{number(of.stated)} ± {number(of.sd, 2)}."
+                f"{number(of.stated)} ± {number(of.sd, 2)}{', in its logarithm' if of.by_factor else ''}."
             )
     return said
 
