@@ -19,7 +19,8 @@ from tendonlab.blind.systems import SYSTEMS
 from tendonlab.blind.write import record, write_dataset
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.logs import read_logs
-from tendonlab.checking.scales import RATIO, ROUGH, ROUGH_SHARE, _refined, _searched, _suspects
+from tendonlab.checking.scales import ROUGH, ROUGH_SHARE, _refined, _searched
+from tendonlab.checking.suspects import RATIO, Suspect, suspects
 from tendonlab.checking.tensions import pushing_cables
 
 STILL = Strength(
@@ -34,11 +35,16 @@ def logs(system: str) -> tuple[Rig, Run]:
     return rig, record([rig], [STILL])[0]
 
 
-def found(folder: Path, system: str, fault: Fault | None) -> list[tuple[str, str, float]]:
-    """Problem, place and size of what blocks."""
+def written(folder: Path, system: str, fault: Fault | None = None) -> tl.Dataset:
+    """The rig of that system."""
     rig, run = logs(system)
     write_dataset(replace(rig), run, folder / "rig", name="rig", description="", fault=fault)
-    findings = tl.check(tl.load(folder / "rig")).findings
+    return tl.load(folder / "rig")
+
+
+def found(folder: Path, system: str, fault: Fault | None) -> list[tuple[str, str, float]]:
+    """Problem, place and size of what blocks."""
+    findings = tl.check(written(folder, system, fault)).findings
     return [(f.problem, f.place, f.factor or f.seconds or 0.0) for f in findings if f.blocks]
 
 
@@ -70,8 +76,7 @@ def test_a_cable_that_pushes_was_logged_with_the_wrong_sign(tmp_path: Path, sign
 
 
 def test_a_force_sensor_that_was_zeroed_under_pretension_has_no_wrong_sign(tmp_path: Path) -> None:
-    found(tmp_path, "ccsrm", None)
-    rig = tl.load(tmp_path / "rig")
+    rig = written(tmp_path, "ccsrm")
     for experiment in rig.experiments:
         experiment.data["tension_22"] -= experiment.data["tension_22"].mean()
     assert list(pushing_cables(rig, rig.system())) == []
@@ -128,16 +133,75 @@ def test_a_wrong_channel_of_a_joint_behind_driven_nuts_is_found(tmp_path: Path, 
     assert size == pytest.approx(factor, rel=0.05)
 
 
+@pytest.mark.parametrize("factor", [1 / 9.81, 1 / 4.448])
+def test_a_unit_that_all_tensions_share_is_found(tmp_path: Path, factor: float) -> None:
+    """Friction adds to tensions what the equation does not know, which a smaller factor suits a little better."""
+    names = ("tension_21", "tension_22")
+    rig = written(tmp_path, "ccsrm")
+    for experiment in rig.experiments:
+        experiment.data[list(names)] *= factor
+    blocking = [(f.problem, f.signal, f.factor) for f in tl.check(rig).findings if f.blocks]
+    assert blocking == [("scale", name, pytest.approx(factor)) for name in names]
+
+
+@pytest.mark.cpu(10)
+@pytest.mark.parametrize(
+    ("system", "names"), [("ccsrm", ("tension_21", "tension_22")), ("cable_joint", ("cable_force_1", "cable_force_2"))]
+)
+def test_columns_in_each_other_s_place_are_found(tmp_path: Path, system: str, names: tuple[str, str]) -> None:
+    rig = written(tmp_path, system)
+    for experiment in rig.experiments:
+        experiment.data[list(names)] = experiment.data[list(reversed(names))].to_numpy()
+    [finding] = [f for f in tl.check(rig).findings if f.blocks]
+    assert (finding.problem, {finding.signal, *finding.alternatives}) == ("sign", set(names))
+    assert "look exchanged" in finding.detail
+
+
+@pytest.mark.cpu(10)
+@pytest.mark.parametrize(
+    ("signal", "factor"), [("joint_angle", 180 / np.pi), ("joint_angle", -1.0), ("driver_angle", -1.0)]
+)
+def test_a_wrong_channel_of_one_run_is_found_where_that_run_alone_tells_little(
+    tmp_path: Path, signal: str, factor: float
+) -> None:
+    """Friction holds one of the tensions: what all runs share tells more than one run."""
+    rig = written(tmp_path, "ccsrm")
+    rig.experiments[1].data[signal] *= factor
+    [finding] = [f for f in tl.check(rig).findings if f.blocks]
+    assert (finding.experiment, finding.factor) == (rig.experiments[1].name, pytest.approx(factor))
+    assert signal in (finding.signal, *finding.alternatives)
+
+
+@pytest.mark.parametrize(("system", "blocks"), [("ccsrm", True), ("bowden_pair", False)])
+def test_samples_seconds_apart_are_milliseconds_where_anything_tells(tmp_path: Path, system: str, blocks: bool) -> None:
+    """Friction with memory strains the beliefs of the right clock; nothing in a Bowden pair has a mass."""
+    rig = written(tmp_path, system)
+    slow = tuple(replace(e, data=e.data.set_axis(1e3 * e.data.index)) for e in rig.experiments)
+    slow = replace(rig, experiments=slow)
+    told = [f for f in tl.check(slow).findings if f.signal == "time"]
+    assert [(f.problem, f.blocks) for f in told] == [("scale" if blocks else "sampling", blocks)]
+    assert "check the unit of the time column" in told[0].detail
+
+
+@pytest.mark.parametrize("factor", [1000.0, 100.0])
+def test_friction_far_from_its_belief_explains_no_wrong_unit(tmp_path: Path, factor: float) -> None:
+    """A third of the input torque, beside friction eleven sd away, suited an output in N*mm to a tenth of the rest."""
+    draw = np.random.default_rng(4)
+    rig = draw_rig(draw, effect="", kind="parameters_only", system=SYSTEMS["bowden_pair"], excitation="poor")
+    fault = Fault(problem="scale", signals=("output_torque",), factor=factor)
+    write_dataset(rig, record([rig], [STILL])[0], tmp_path / "rig", name="rig", description="", fault=fault)
+    blocking = [f for f in tl.check(tl.load(tmp_path / "rig")).findings if f.blocks]
+    assert [(f.signal, f.factor) for f in blocking] == [("output_torque", pytest.approx(factor, rel=0.1))]
+
+
 def test_a_velocity_that_only_turns_friction_has_no_size(tmp_path: Path) -> None:
     """At a thousandth of its size the gate would stay shut: that is no sign that the velocity is wrong."""
-    rig, run = logs("bowden_pair")
-    write_dataset(replace(rig), run, tmp_path / "rig", name="rig", description="", fault=None)
-    dataset = tl.load(tmp_path / "rig")
+    dataset = written(tmp_path, "bowden_pair")
     equation = Equation(dataset, dataset.system())
-    tried = [(signals, sign) for signals, sign in _suspects(equation) if signals == ("input_velocity",)]
-    assert tried == [(("input_velocity",), -1.0)]
+    tried = [suspect for suspect in suspects(equation) if suspect.signals == ("input_velocity",)]
+    assert tried == [Suspect(("input_velocity",), (-1.0,))]
     read = read_logs(dataset, dataset.system().info)
     assert read is not None
-    turned = _searched(equation, read.thinned(ROUGH), *tried[0], np.full(1, ROUGH_SHARE))
+    turned = _searched(equation, read.thinned(ROUGH), tried[0], np.full(1, ROUGH_SHARE))
     assert turned.value == -1.0
     assert _refined(equation, read.thinned(ROUGH), turned, np.full(1, ROUGH_SHARE), RATIO, 0.05).value == -1.0

@@ -11,14 +11,17 @@ from tendonlab.checking.copies import copy_findings
 from tendonlab.checking.dead import dead_outputs
 from tendonlab.checking.driven import free_runs
 from tendonlab.checking.equation import Equation
+from tendonlab.checking.exchanged import exchanged
 from tendonlab.checking.finding import PROBLEMS, Check, Finding
 from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.odd import odd_channels, odd_clocks, owned
+from tendonlab.checking.odd_units import odd_units
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.silent import all_at_rest, silent_inputs
 from tendonlab.checking.spikes import Marks, marks
+from tendonlab.checking.stamps import strange_steps
 from tendonlab.checking.tensions import pushing_cables
 from tendonlab.data import Dataset, NominalParameter, require_dataset, simulator_of
 from tendonlab.simulation.system import System
@@ -75,11 +78,16 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
-    factors = owned(wrong_factors(equation, logs), equation, logs, marked) or odd_channels(equation, logs, marked)
-    factors = factors or list(silent_inputs(equation, logs))
-    if factors:  # lags are judged once these are corrected
-        return factors, []
-    return _clocks(equation, logs, marked)
+    steps = strange_steps(equation, logs)
+    if any(f.blocks for f in steps):
+        return steps, []
+    wrong = odd_units(equation, logs) or exchanged(equation, logs, marked)
+    wrong = wrong or owned(wrong_factors(equation, logs), equation, logs, marked)
+    wrong = wrong or odd_channels(equation, logs, marked) or list(silent_inputs(equation, logs))
+    if wrong:  # lags are judged once these are corrected
+        return [*steps, *wrong], []
+    late, notes = _clocks(equation, logs, marked)
+    return [*steps, *late], notes
 
 
 def _clocks(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:

@@ -14,6 +14,7 @@ KNOWN = (
     (180.0 / math.pi, "180/pi", "pi/180", "degrees and radians"),
     (60.0, "60", "1/60", "minutes and seconds"),
     (9.81, "9.81", "1/9.81", "kilogram-force and newton"),
+    (4.448, "4.448", "1/4.448", "pound-force and newton"),
     (2.0 * math.pi, "2 pi", "1/(2 pi)", "turns and radians"),
     (2.0, "2", "1/2", "a diameter and a radius, or both sides and one"),
     (math.sqrt(3.0), "sqrt(3)", "1/sqrt(3)", "values of a phase and of a line, as of a motor's current"),

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 CLEAR = 3.0  # sd of its noise that a velocity must exceed for its direction to be known
 SLIDING = 0.3  # of its rms that a velocity must exceed, of systems that are told velocities
+OTHER_UNIT = 6.0  # times the noise of the median experiment, above which an experiment must be in another unit
 GAP = 3.0  # median steps between two samples that make a gap
 ENDS = 4.0  # sd of the Gaussian at each end of a record where it looks beyond the record
 TIME = "time"
@@ -44,14 +45,15 @@ class Logs:
     clear: np.ndarray
     changing: dict[str, np.ndarray] = field(default_factory=dict)
 
-    def scaled(self, signals: Sequence[str], factor: float) -> Logs:
-        """The logs with `signals` divided by a factor; "time" is the clock."""
+    def scaled(self, signals: Sequence[str], factor: float, run: int | None = None) -> Logs:
+        """The logs with `signals` divided by a factor, in one experiment or in all; "time" is the clock of all."""
         if TIME in signals:
             rates = float(factor) ** np.array([0.0, 1.0, 2.0, -1.0])[:, None]
             moving = {name: rows * rates[:3] for name, rows in self.moving.items()}
             driving = {name: rows * rates[[0, 1, 3]] for name, rows in self.driving.items()}
             return replace(self, moving=moving, driving=driving, changing={})
-        return self._each(lambda name, rows: rows / factor if name in signals else rows)
+        by = factor if run is None else np.where(self.run == run, factor, 1.0)
+        return self._each(lambda name, rows: rows / by if name in signals else rows)
 
     def earlier(self, by: Mapping[str, np.ndarray]) -> Logs:
         """The logs with outputs moved by so much, s, one number per experiment, towards the past."""
@@ -135,8 +137,13 @@ def read_logs(dataset: Dataset, info: SystemInfo, marked: Marks | None = None) -
         return None
     total = sum(len(r.whole) for r in records)
     sd = smoothing.width(positions, noise, total)
-    quiet = {name: max(noise[k :: len(axes)]) for k, name in enumerate(axes)}
+    quiet = {name: _quiet(noise[k :: len(axes)]) for k, name in enumerate(axes)}
     return _joined([r.smoothed(info, axes, quiet, sd, step) for r in records], step * smoothing.stride(sd))
+
+
+def _quiet(noise: Sequence[float]) -> float:
+    """The noise of a channel: that of its noisiest experiment, unless this one is in another unit."""
+    return min(max(noise), OTHER_UNIT * float(np.median(noise)))
 
 
 @dataclass(frozen=True)

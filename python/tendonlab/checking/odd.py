@@ -11,9 +11,10 @@ from tendonlab.checking.equation import Equation
 from tendonlab.checking.factors import factor_findings
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.logs import TIME, Logs, read_logs
+from tendonlab.checking.regression import Fit
 from tendonlab.checking.scales import EXPLAINED, ROUGH, ROUGH_SHARE, SUSPECT, Factor, wrong_factors
 from tendonlab.checking.spikes import Marks
-from tendonlab.checking.terms import terms
+from tendonlab.checking.terms import Terms, terms
 from tendonlab.data import Dataset
 
 FEWEST, MOST = 3, 0.25  # experiments among which one is odd, and share of them that may be
@@ -107,12 +108,16 @@ def _left(equation: Equation, logs: Logs) -> np.ndarray:
     """What the equations leave of each experiment, relative to what they predict (experiments, equations)."""
     rough = logs.thinned(ROUGH)
     at = terms(equation, rough)
-    fit = at.fit(np.full(len(equation.predicted), ROUGH_SHARE))
-    runs = np.unique(rough.run)
+    return left_of(equation, rough, at, at.fit(np.full(len(equation.predicted), ROUGH_SHARE)))
+
+
+def left_of(equation: Equation, logs: Logs, at: Terms, fit: Fit) -> np.ndarray:
+    """The same of a fit; empty where there is none, or nothing of an experiment is judged."""
+    runs = np.unique(logs.run)
     if not np.isfinite(fit.cost) or len(runs) < len(equation.dataset.experiments):
         return np.empty((0, 0))
     away = np.abs(fit.residual) / at.size[:, None]
-    return np.array([np.median(away[:, rough.run == i], axis=1) for i in runs])
+    return np.array([np.median(away[:, logs.run == i], axis=1) for i in runs])
 
 
 def _factors_of(equation: Equation, experiment: int, marked: Marks) -> list[Factor]:

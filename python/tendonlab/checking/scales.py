@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tendonlab.checking.conversions import nearest
 from tendonlab.checking.equation import Equation
-from tendonlab.checking.logs import TIME, VELOCITIES, Logs
+from tendonlab.checking.logs import Logs
 from tendonlab.checking.regression import MOST_STEPS, Fit, Unknown
+from tendonlab.checking.suspects import RATIO, Suspect, only_turns, suspects
 from tendonlab.checking.terms import terms
 from tendonlab.fitting.noise import integrated_time
 
-LARGEST, RATIO = 2.0**18, 8.0  # factors that are tried, and from one to the next
 ROUGH, FINE = 300, 1500  # samples in the search, and in what decides
 STEPS = 6  # of a fit in the search
 ROUGH_SHARE = 0.2  # of the samples that count as independent before the residual is known
@@ -43,12 +42,13 @@ PASSED_ON = 1.85  # where no axis moves by an equation: friction of a sheath gro
 @dataclass(frozen=True)
 class Factor:
     """Channels that are logged `value` times too large, the fit once they are corrected, and its gain in nats over
-    the logs as they are."""
+    the logs as they are. `exact`: the value is a ratio of units, which is not refined."""
 
     signals: tuple[str, ...]
     value: float
     fit: Fit
     gain: float = 0.0
+    exact: bool = False
 
 
 def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
@@ -61,10 +61,11 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     if np.all(plain.level < SUSPECT) and plain.strain < STRAINED:
         return []
     least = BLOCKING if equation.moved else PASSED_ON
-    searched = [_searched(equation, rough, signals, sign, share) for signals, sign in _suspects(equation)]
-    leading = sorted(searched, key=lambda f: f.fit.cost)[:REFINED]
+    searched = [_searched(equation, rough, suspect, share) for suspect in suspects(equation)]
+    leading = _leading(searched)
     found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
     found = [f for f in found if _is_credible(f, plain, least)]
+    found = [f for f in found if is_calm(f.fit, plain)] or found
     if not found:
         return []
     best = min(found, key=lambda f: f.fit.cost)
@@ -72,24 +73,46 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     if not told.any() or not _blocks(best.value, least) or plain.cost - best.fit.cost < LEAST_GAIN:
         return []
     slack = LEAST_GAIN + ALIKE_SHARE * (plain.cost - best.fit.cost)
-    found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack]
+    found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack or (f.exact and is_calm(f.fit, plain))]
     fine = logs.thinned(FINE)
     share = told * independent(best, equation, fine)
+    balanced = np.fmax(plain.level, best.fit.level) < SUSPECT  # anyway: strained beliefs would bring it many nats
+    share = np.where(balanced & np.any(~balanced & told), np.fmin(share, ROUGH_SHARE * ROUGH / FINE), share)
     base = terms(equation, fine).fit(share)
     polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
     polished = [_mere_sign(equation, fine, f, share, base, told) for f in polished]
-    judged = sorted((replace(f, gain=base.cost - f.fit.cost) for f in polished), key=lambda f: f.fit.cost)
+    judged = ranked([replace(f, gain=base.cost - f.fit.cost) for f in polished])
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value, least) or np.any(best.fit.level[told] > EXPLAINED):
         return []
     if not _helps(best.fit, base, told) or not _convinces(best, base, told) or _suits_late(equation, logs, best, share):
         return []
-    if _only_turns(equation, best.signals):  # of any size: its sign must be what the beliefs ask for
+    if only_turns(equation, best.signals):  # of any size: its sign must be what the beliefs ask for
         if best.fit.strain > CREDIBLE:
             return []
     elif _is_explained_away(equation, fine, best, base, told, share):
         return []
     return [f for f in judged if f.gain > best.gain - ALIKE - ALIKE_SHARE * best.gain and _blocks(f.value, least)]
+
+
+def _leading(factors: list[Factor]) -> list[Factor]:
+    """The best of those that a search found, and of the units of single channels that strain no belief: each of these
+    channels is among the former with any factor, and would take the place of others."""
+    by_cost = sorted(factors, key=lambda f: f.fit.cost)
+    units = [f for f in by_cost if f.exact and len(f.signals) == 1]
+    free = [f for f in by_cost if not (f.exact and len(f.signals) == 1)]
+    return [*free[:REFINED], *[f for f in units if f.fit.strain < CREDIBLE][:REFINED]]
+
+
+def ranked(factors: list[Factor]) -> list[Factor]:
+    """By gain, one for each set of channels. The ratio of two units counts as equally good within the slack in which
+    channels do: it is far likelier than a ratio near it."""
+    slack = ALIKE + ALIKE_SHARE * max(f.gain for f in factors)
+    ordered = sorted(factors, key=lambda f: f.gain + slack * f.exact, reverse=True)
+    best: dict[tuple[str, ...], Factor] = {}
+    for factor in ordered:
+        best.setdefault(factor.signals, factor)
+    return list(best.values())
 
 
 def _is_explained_away(
@@ -108,6 +131,15 @@ def _is_credible(factor: Factor, plain: Fit, least: float) -> bool:
     if not _blocks(-factor.value, least) or factor.fit.strain < max(plain.strain, CREDIBLE):
         return True
     return bool(np.any((factor.fit.level < NEARLY) & (factor.fit.level < SETTLED * plain.level)))
+
+
+def is_calm(fit: Fit, plain: Fit) -> bool:
+    """Whether corrected logs strain no belief, and balance, or heal an equation and leave none worse than nothing.
+    Beside such a correction none that strains beliefs counts: far more friction than stated suits a sheath whose output
+    is in N*mm to a tenth of what its right unit leaves."""
+    healed = np.any((fit.level < BALANCED) & (fit.level < HEALED * plain.level))
+    healed &= np.all((fit.level < 1.0) | (fit.level < HEALED * plain.level))
+    return bool(fit.strain < CREDIBLE and (healed or np.all(fit.level < BALANCED)))
 
 
 def _mere_sign(
@@ -161,34 +193,10 @@ def _suits_late(equation: Equation, logs: Logs, factor: Factor, share: np.ndarra
     return False
 
 
-def _suspects(equation: Equation) -> Iterator[tuple[tuple[str, ...], float]]:
-    """Sets of channels that may share a factor, with its sign. A limit is no suspect: what it does not bound says
-    nothing of its size. Nor is the size of a velocity that moves nothing and only turns friction."""
-    info, known = equation.system.info, equation.dataset.signals
-    inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio" and not s.limit]
-    axes = tuple(equation.axes.values())
-    sets = [(name,) for name in (*inputs, *axes, *equation.others)] + ([axes] if len(axes) > 1 else [])
-    for signals in sets:
-        if not _only_turns(equation, signals):
-            yield signals, 1.0
-        yield signals, -1.0
-    yield (TIME,), 1.0
-
-
-def _only_turns(equation: Equation, signals: tuple[str, ...]) -> bool:
-    """Whether channels are velocities that move nothing and only turn friction: at any other size they would shut or
-    open a gate instead."""
-    info = equation.system.info
-    turning = {s.name for s in info.inputs if s.dimension in VELOCITIES and not info.dof}
-    return not turning.isdisjoint(signals)
-
-
-def _searched(equation: Equation, logs: Logs, signals: tuple[str, ...], sign: float, share: np.ndarray) -> Factor:
-    """The best of factors far apart."""
-    num = int(np.log(LARGEST) / np.log(RATIO))
-    sizes = np.concatenate([RATIO ** np.arange(-num, num + 1.0), [2.0, 0.5]])  # the latter: a usual mistake
-    values = sign * (np.ones(1) if _only_turns(equation, signals) else sizes)
-    tried = [Factor(signals, float(v), _fitted(equation, logs, signals, v, share, STEPS)) for v in values]
+def _searched(equation: Equation, logs: Logs, suspect: Suspect, share: np.ndarray) -> Factor:
+    """The best of the factors that a suspect may have."""
+    fits = [_fitted(equation, logs, suspect.signals, v, share, STEPS) for v in suspect.values]
+    tried = [Factor(suspect.signals, v, f, exact=suspect.exact) for v, f in zip(suspect.values, fits, strict=True)]
     return min(tried, key=lambda f: f.fit.cost)
 
 
@@ -199,7 +207,7 @@ def _refined(
     its valley is too narrow for a search: there Gauss-Newton finds it, or it is that one."""
     from scipy.optimize import minimize_scalar
 
-    if _only_turns(equation, factor.signals):
+    if factor.exact or only_turns(equation, factor.signals):
         return replace(factor, fit=_fitted(equation, logs, factor.signals, factor.value, share))
 
     def cost(logarithm: float) -> float:
