@@ -1,10 +1,22 @@
 """How many samples of a residual count, and what a right factor must bring."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tendonlab.checking.regression import Fit
-from tendonlab.checking.scales import BLOCKING, Factor, _convinces, _helps, _is_credible, shares
+from tendonlab.checking.scales import (
+    BLOCKING,
+    Factor,
+    _convinces,
+    _helps,
+    _is_credible,
+    _leading,
+    is_calm,
+    ranked,
+    shares,
+)
 
 
 @pytest.mark.parametrize("times", [1, 5, 20])
@@ -76,3 +88,38 @@ def test_a_corrected_scale_may_strain_beliefs_where_it_brings_an_equation_to_bal
 ) -> None:
     factor = Factor(("output_torque",), value, left([level, 1.0], strain))
     assert _is_credible(factor, left([before, 1.0], 0.1), BLOCKING) == credible
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "strain", "calm"),
+    [
+        ([0.65], [0.0018], 0.99, True),  # the right unit of a sheath's output,
+        ([0.65], [0.0002], 11.4, False),  # and another torque, beside friction eleven sd away
+        ([0.21], [0.06], 1.5, True),  # balances, though a strong effect is missing
+        ([1.6, 11.8, 4.2], [0.04, 0.95, 0.01], 1.7, True),  # friction holds the second, a tension
+        ([0.04, 19.0, 9.0], [0.04, 19.0, 0.01], 1.7, False),  # another tension stays worse than nothing
+        ([3.3, 267.0], [0.05, 2.6], 3.9, True),  # far nearer than before
+        ([0.3, 0.3], [0.2, 0.2], 0.5, False),
+    ],
+)
+def test_a_calm_correction_heals_or_balances_and_strains_nothing(
+    before: list[float], after: list[float], strain: float, calm: bool
+) -> None:
+    assert is_calm(left(after, strain), left(before, 6.0)) == calm
+
+
+def factor(signal: str, value: float, gain: float, *, exact: bool = False) -> Factor:
+    return Factor((signal,), value, replace(left([0.1], 1.0), cost=-gain), gain, exact)
+
+
+def test_a_ratio_of_units_is_preferred_to_one_near_it_and_not_to_one_far_better() -> None:
+    near = ranked([factor("a", 0.11, 100.0), factor("a", 0.102, 97.0, exact=True), factor("b", 2.0, 99.0)])
+    assert [(f.signals[0], f.value) for f in near] == [("a", 0.102), ("b", 2.0)]
+    far = ranked([factor("a", 0.15, 100.0), factor("a", 0.102, 80.0, exact=True)])
+    assert [f.value for f in far] == [0.15]
+
+
+def test_units_of_one_channel_take_no_place_of_others() -> None:
+    units = [factor("a", 10.0**k, 50.0 + k, exact=True) for k in range(6)]
+    leading = _leading([*units, *(factor(name, 2.0, 10.0) for name in "abcd")])
+    assert {f.signals[0] for f in leading if not f.exact} == set("abcd")

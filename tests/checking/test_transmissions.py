@@ -183,17 +183,6 @@ def test_samples_seconds_apart_are_milliseconds_where_anything_tells(tmp_path: P
     assert "check the unit of the time column" in told[0].detail
 
 
-@pytest.mark.parametrize("factor", [1000.0, 100.0])
-def test_friction_far_from_its_belief_explains_no_wrong_unit(tmp_path: Path, factor: float) -> None:
-    """A third of the input torque, beside friction eleven sd away, suited an output in N*mm to a tenth of the rest."""
-    draw = np.random.default_rng(4)
-    rig = draw_rig(draw, effect="", kind="parameters_only", system=SYSTEMS["bowden_pair"], excitation="poor")
-    fault = Fault(problem="scale", signals=("output_torque",), factor=factor)
-    write_dataset(rig, record([rig], [STILL])[0], tmp_path / "rig", name="rig", description="", fault=fault)
-    blocking = [f for f in tl.check(tl.load(tmp_path / "rig")).findings if f.blocks]
-    assert [(f.signal, f.factor) for f in blocking] == [("output_torque", pytest.approx(factor, rel=0.1))]
-
-
 def test_a_velocity_that_only_turns_friction_has_no_size(tmp_path: Path) -> None:
     """At a thousandth of its size the gate would stay shut: that is no sign that the velocity is wrong."""
     dataset = written(tmp_path, "bowden_pair")
