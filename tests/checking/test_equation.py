@@ -76,7 +76,7 @@ def test_columns_are_what_their_unknowns_change(equation: Equation) -> None:
     np.testing.assert_allclose(columns["dry friction"], np.sign(v) * size, rtol=1e-6)
     sds = {u.name: u.sd for u in found.unknowns}
     assert sds["inertia"] == pytest.approx(0.002 / INERTIA)
-    assert (sds["viscous"], sds["coulomb"]) == (0.6, 0.3)  # damping and other defaults
+    assert (sds["viscous"], sds["coulomb"]) == (0.6, 0.6)  # the default of friction
     assert "torque_constant" not in sds  # stated with sd = 0
     positive = {u.name for u in found.unknowns if u.positive}
     assert positive == {"dry friction", "viscous friction"}

@@ -98,7 +98,7 @@ def test_a_corrected_scale_may_strain_beliefs_where_it_brings_an_equation_to_bal
         ([0.21], [0.06], 1.5, True),  # balances, though a strong effect is missing
         ([1.6, 11.8, 4.2], [0.04, 0.95, 0.01], 1.7, True),  # friction holds the second, a tension
         ([0.04, 19.0, 9.0], [0.04, 19.0, 0.01], 1.7, False),  # another tension stays worse than nothing
-        ([3.3, 267.0], [0.05, 2.6], 3.9, True),  # far nearer than before
+        ([3.3, 267.0], [0.05, 2.6], 3.9, False),  # far nearer than before, and still worse than nothing
         ([0.3, 0.3], [0.2, 0.2], 0.5, False),
     ],
 )

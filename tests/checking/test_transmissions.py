@@ -187,7 +187,7 @@ def test_a_velocity_that_only_turns_friction_has_no_size(tmp_path: Path) -> None
     """At a thousandth of its size the gate would stay shut: that is no sign that the velocity is wrong."""
     dataset = written(tmp_path, "bowden_pair")
     equation = Equation(dataset, dataset.system())
-    tried = [suspect for suspect in suspects(equation) if suspect.signals == ("input_velocity",)]
+    tried = [suspect for suspect in suspects(equation, np.ones(1)) if suspect.signals == ("input_velocity",)]
     assert tried == [Suspect(("input_velocity",), (-1.0,))]
     read = read_logs(dataset, dataset.system().info)
     assert read is not None

@@ -8,6 +8,7 @@ import pytest
 import scipy.io
 
 from tendonlab.data import load
+from tendonlab.data.bam import write_bam
 from tendonlab.data.datasets import list_datasets, prepare
 from tendonlab.data.emps import write_emps
 from tendonlab.errors import DatasetError
@@ -156,3 +157,26 @@ def test_eight_bit_pulses_become_signed_volts(tmp_path):
     write_emps({name: tmp_path / name for name in FILES}, tmp_path / "rig")
     dataset = load(tmp_path / "rig")
     assert list(-dataset["pulses"].data["disturbance_voltage"]) == [0.0, -5.0, -5.0, 0.0]
+
+
+SERVO = "bam_xl330"
+
+
+def test_a_measured_servo_is_a_dataset_with_a_gain_for_each_record(tmp_path):
+    """Three gains and four motions; the middle gain is held out."""
+    if not (Path(os.environ.get("TENDONLAB_DATA", "")) / SERVO / "processed").is_dir():
+        pytest.skip(f"the records of the servo are not there: TENDONLAB_DATA names no folder with {SERVO}/processed")
+    dataset = load(prepare(SERVO, out=tmp_path / "rig"))
+    gains = {e.name: e.conditions["proportional_gain"] for e in dataset.experiments}
+    assert len(gains) == 12
+    assert gains["sin_sin-100"] == pytest.approx(100 * 4096 / (2 * np.pi) / (256 * 885) * 7.3, rel=1e-5)
+    assert {e.name.split("-")[1] for e in dataset.test} == {"400"}
+    drop = dataset["lift_and_drop-800"].data
+    assert drop["torque_enable"].iloc[0] == 1.0
+    assert drop["torque_enable"].iloc[-1] == 0.0
+
+
+def test_a_record_without_a_field_is_named(tmp_path):
+    (tmp_path / "a.json").write_text('{"kp": 100, "dt": 0.005, "entries": []}', encoding="utf-8")
+    with pytest.raises(DatasetError, match=r"a.json: no field 'trajectory'; expected the published record"):
+        write_bam({"a.json": tmp_path / "a.json"}, tmp_path / "rig")

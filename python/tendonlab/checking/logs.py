@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 CLEAR = 3.0  # sd of its noise that a velocity must exceed for its direction to be known
 SLIDING = 0.3  # of its rms that a velocity must exceed, of systems that are told velocities
-OTHER_UNIT = 6.0  # times the noise of the median experiment, above which an experiment must be in another unit
+OTHER_UNIT = 10.0  # times the noise of the next noisiest experiment, above which an experiment is in another unit
 GAP = 3.0  # median steps between two samples that make a gap
 ENDS = 4.0  # sd of the Gaussian at each end of a record where it looks beyond the record
 TIME = "time"
@@ -142,8 +142,9 @@ def read_logs(dataset: Dataset, info: SystemInfo, marked: Marks | None = None) -
 
 
 def _quiet(noise: Sequence[float]) -> float:
-    """The noise of a channel: that of its noisiest experiment, unless this one is in another unit."""
-    return min(max(noise), OTHER_UNIT * float(np.median(noise)))
+    """The noise of a channel: that of its noisiest experiment, unless this one must be in another unit."""
+    *_, second, most = (0.0, *sorted(noise))
+    return second if 0.0 < OTHER_UNIT * second < most else most
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@ all share."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from tendonlab.checking.finding import Finding
 from tendonlab.checking.logs import Logs
 from tendonlab.checking.odd import ALIKE, FEWEST, MOST, ODD, UNBALANCED, left_of
 from tendonlab.checking.scales import LEAST_GAIN, ROUGH, ROUGH_SHARE, SUSPECT, Factor, ranked
-from tendonlab.checking.suspects import in_other_units, only_turns, turned
+from tendonlab.checking.suspects import Suspect, in_other_units, only_turns, turned
 from tendonlab.checking.terms import terms
 
 
@@ -37,10 +37,12 @@ def _of_the_oddest(equation: Equation, logs: Logs) -> tuple[int, list[Factor]] |
     """The experiment that stands out most, and the equally good factors that mend it."""
     at = terms(equation, logs)
     plain = at.fit(np.full(len(equation.predicted), ROUGH_SHARE))
-    run, excess = _oddest(left_of(equation, logs, at, plain))
+    left = left_of(equation, logs, at, plain)
+    run, excess = _oddest(left)
     if excess < ODD:
         return None
-    tried = [f for f in _tried(equation, logs, run, plain.cost) if f.gain > LEAST_GAIN]
+    among = [*turned(equation), *in_other_units(equation, left[run])]
+    tried = [f for f in _tried(equation, logs, run, plain.cost, among) if f.gain > LEAST_GAIN]
     best = ranked(tried) if tried else []
     return (run, [f for f in best if f.gain > best[0].gain - LEAST_GAIN]) if best else None
 
@@ -55,11 +57,11 @@ def _oddest(left: np.ndarray) -> tuple[int, float]:
     return int(np.argmax(excess)), float(np.max(excess))
 
 
-def _tried(equation: Equation, logs: Logs, run: int, cost: float) -> Iterator[Factor]:
+def _tried(equation: Equation, logs: Logs, run: int, cost: float, among: Iterable[Suspect]) -> Iterator[Factor]:
     """Every unit and sign of one experiment that makes it as the others are, by what each gains together with the
     parameters that all share. Beliefs may be strained: memory of friction, which the equation ignores, strains them."""
     share = np.full(len(equation.predicted), ROUGH_SHARE)
-    for suspect in (*turned(equation), *in_other_units(equation)):
+    for suspect in among:
         if only_turns(equation, suspect.signals):  # far more friction in a cold run asks for such a sign as well
             continue
         [value] = suspect.values

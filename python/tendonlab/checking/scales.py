@@ -27,6 +27,7 @@ SPOILT = 1.5  # times the level of an equation that explains too little, beyond 
 CREDIBLE = 4.0  # sd by which a corrected scale may strain the beliefs (a mere sign by any), unless the logs strain more
 SETTLED = 0.01  # share of the level of an equation that may be left where no strain speaks against a factor
 BALANCED = 0.1  # level of an equation that balances: where none does, nothing may be strained
+NOISELESS = 0.002  # level of an equation that balances beyond what any model does: strained beliefs bring it many nats
 NEARLY = 0.4  # level to which a factor must mend an equation to be believed for that: friction with memory remains
 LATEST, MOST_LAGS = 0.05, 8  # s: lags of outputs that are tried before a factor is told, at most so many
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
@@ -61,7 +62,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     if np.all(plain.level < SUSPECT) and plain.strain < STRAINED:
         return []
     least = BLOCKING if equation.moved else PASSED_ON
-    searched = [_searched(equation, rough, suspect, share) for suspect in suspects(equation)]
+    searched = [_searched(equation, rough, suspect, share) for suspect in suspects(equation, plain.level)]
     leading = _leading(searched)
     found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
     found = [f for f in found if _is_credible(f, plain, least)]
@@ -76,8 +77,8 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack or (f.exact and is_calm(f.fit, plain))]
     fine = logs.thinned(FINE)
     share = told * independent(best, equation, fine)
-    balanced = np.fmax(plain.level, best.fit.level) < SUSPECT  # anyway: strained beliefs would bring it many nats
-    share = np.where(balanced & np.any(~balanced & told), np.fmin(share, ROUGH_SHARE * ROUGH / FINE), share)
+    exact = np.fmax(plain.level, best.fit.level) < NOISELESS
+    share = np.where(exact & np.any(~exact & told), np.fmin(share, ROUGH_SHARE * ROUGH / FINE), share)
     base = terms(equation, fine).fit(share)
     polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
     polished = [_mere_sign(equation, fine, f, share, base, told) for f in polished]
@@ -137,8 +138,7 @@ def is_calm(fit: Fit, plain: Fit) -> bool:
     """Whether corrected logs strain no belief, and balance, or heal an equation and leave none worse than nothing.
     Beside such a correction none that strains beliefs counts: far more friction than stated suits a sheath whose output
     is in N*mm to a tenth of what its right unit leaves."""
-    healed = np.any((fit.level < BALANCED) & (fit.level < HEALED * plain.level))
-    healed &= np.all((fit.level < 1.0) | (fit.level < HEALED * plain.level))
+    healed = np.any((fit.level < BALANCED) & (fit.level < HEALED * plain.level)) and np.all(fit.level < 1.0)
     return bool(fit.strain < CREDIBLE and (healed or np.all(fit.level < BALANCED)))
 
 

@@ -33,8 +33,9 @@ class Suspect:
     exact: bool = False
 
 
-def suspects(equation: Equation) -> Iterator[Suspect]:
-    """Every suspect: of any size with each sign, and in each other unit. Of the size of a velocity that moves nothing
+def suspects(equation: Equation, level: np.ndarray) -> Iterator[Suspect]:
+    """Every suspect: of any size with each sign, and in each other unit; `level`: what each equation leaves, relative
+    to what it predicts. Of the size of a velocity that moves nothing
     and only turns friction the logs say nothing. All tensions together may be in another unit, but not of any size: as
     friction adds to them what the equation does not know, any smaller factor suits a little better."""
     axes, sizes = tuple(equation.axes.values()), _sizes()
@@ -44,14 +45,20 @@ def suspects(equation: Equation) -> Iterator[Suspect]:
             yield Suspect(signals, sizes)
         yield Suspect(signals, (-1.0,) if alone else tuple(-v for v in sizes))
     yield Suspect((TIME,), sizes)
-    yield from in_other_units(equation)
+    yield from in_other_units(equation, level)
 
 
-def in_other_units(equation: Equation) -> Iterator[Suspect]:
-    """Each channel, all axes, and all other outputs of one unit, by each ratio of units."""
+def in_other_units(equation: Equation, level: np.ndarray) -> Iterator[Suspect]:
+    """Each channel, all axes, and all other outputs of one unit, by each ratio of units. The latter where none of their
+    equations explains anything: where some balance, their unit is right."""
     known = equation.dataset.signals
-    alike = [tuple(n for n in names if known[n].si_unit == unit) for unit in UNITS for names in _together(equation)]
-    for signals in [*_alone(equation), *(names for names in alike if len(names) > 1)]:
+    lost = {names for names, left in zip(equation.predicted, level, strict=True) if left > 1.0}
+    axes = tuple(equation.axes.values())
+    alike = [axes, *(tuple(name for name in equation.others if known[name].si_unit == unit) for unit in UNITS)]
+    shared = [
+        names for names in alike if len(names) > 1 and (names is axes or lost.issuperset((name,) for name in names))
+    ]
+    for signals in [*_alone(equation), *shared]:
         for ratio in () if only_turns(equation, signals) else UNITS.get(known[signals[0]].si_unit, ()):
             yield Suspect(signals, (ratio,), exact=True)
             yield Suspect(signals, (1.0 / ratio,), exact=True)
@@ -69,10 +76,6 @@ def _alone(equation: Equation) -> list[tuple[str, ...]]:
     info, known = equation.system.info, equation.dataset.signals
     inputs = [s.name for s in info.inputs if s.name in known and s.dimension != "ratio" and not s.limit]
     return [(name,) for name in (*inputs, *equation.measured)]
-
-
-def _together(equation: Equation) -> tuple[tuple[str, ...], ...]:
-    return tuple(equation.axes.values()), equation.others
 
 
 def only_turns(equation: Equation, signals: tuple[str, ...]) -> bool:

@@ -51,7 +51,7 @@ def terms(equation: Equation, logs: Logs) -> Terms:
     """The regression of `equation` on `logs`; with a lag of each output where the logs are thinned."""
     stretches, num = equation.along(logs), len(logs.run)
     free = _free(equation)
-    nudges = {k: _nudge(p, stated) for k, (p, stated) in free.items()}
+    nudges = {k: _nudge(p, stated) for k, (p, stated, _) in free.items()}
     residual, *moved = equation.nudged(stretches, num, nudges)
     silent, *moved_silent = equation.nudged(
         [s.without_inputs(equation.system, set(logs.driving) - set(equation.prescribed)) for s in stretches],
@@ -76,11 +76,13 @@ def terms(equation: Equation, logs: Logs) -> Terms:
     return Terms(residual, columns, tuple(u for u, _ in seen), size)
 
 
-def _free(equation: Equation) -> dict[int, tuple[ParameterInfo, NominalParameter]]:
-    """The parameters that may differ from their nominal values, by their index."""
-    stated = [(p, equation.dataset.parameters.get(p.name)) for p in equation.system.info.parameters]
+def _free(equation: Equation) -> dict[int, tuple[ParameterInfo, NominalParameter, float]]:
+    """The parameters that may differ from their nominal values, by their index, and the sd of the logarithm of those
+    without a stated one."""
+    info = equation.system.info
+    stated = [(p, equation.dataset.parameters.get(p.name)) for p in info.parameters]
     return {
-        k: (p, nominal)
+        k: (p, nominal, default_log_sd(info, p))
         for k, (p, nominal) in enumerate(stated)
         if nominal is not None and p.name in equation.system.parameters and _is_free(p, nominal)
     }
@@ -104,6 +106,7 @@ def _nudge(p: ParameterInfo, stated: NominalParameter) -> float:
 def _gain(
     p: ParameterInfo,
     stated: NominalParameter,
+    usual: float,
     residual: np.ndarray,
     slope: np.ndarray,
     driven: np.ndarray,
@@ -121,7 +124,7 @@ def _gain(
     if abs(strongest) < LEAST_POWER:
         return None
     column = power[:, None] * residual - slope * stated.value
-    sd = default_log_sd(p) if stated.sd is None else stated.sd / abs(stated.value)
+    sd = usual if stated.sd is None else stated.sd / abs(stated.value)
     return Unknown(p.name, sd=sd, logarithm=True), column * np.sign(strongest)
 
 
@@ -157,11 +160,11 @@ def _is_free(p: ParameterInfo, stated: NominalParameter) -> bool:
     return stated.sd is not None or not known_by_default(p, stated.value)
 
 
-def _believed(p: ParameterInfo, stated: NominalParameter, slope: np.ndarray, size: np.ndarray) -> Column:
+def _believed(p: ParameterInfo, stated: NominalParameter, usual: float, slope: np.ndarray, size: np.ndarray) -> Column:
     """What is believed of a parameter: of its logarithm where it cannot be negative, as in a fit. `slope` is relative
     to the equations' `size`."""
     scale = abs(stated.value) or EXTRA / (float(np.max(np.sqrt(np.mean(slope**2, axis=1)))) or 1.0)
-    sd = default_log_sd(p) if stated.sd is None else stated.sd / scale
+    sd = usual if stated.sd is None else stated.sd / scale
     if not stated.value:
         sd = 1.0 if stated.sd is None else sd
         return Unknown(p.name, sd=sd, positive=p.lower >= 0), slope * scale * size[:, None]

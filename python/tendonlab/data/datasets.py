@@ -13,6 +13,7 @@ from typing import Any
 from urllib.parse import urlparse
 from urllib.request import urlopen
 
+from tendonlab.data.bam import write_bam
 from tendonlab.data.emps import write_emps
 from tendonlab.errors import DatasetError, ParameterError, expected_one_of
 
@@ -56,7 +57,78 @@ _EMPS = PublicDataset(
     ),
     write=write_emps,
 )
-_ALL = {dataset.name: dataset for dataset in (_EMPS,)}
+_BAM = PublicDataset(
+    name="bam_xl330",
+    summary="pendulum on a small geared servo under its own position control: three gains, four motions",
+    licence="Apache-2.0",
+    citation="M. Duclusaud, G. Passault, V. Padois, O. Ly, Extended friction models for the physics simulation of "
+    "servo actuators, ICRA 2025",
+    home="https://raw.githubusercontent.com/Rhoban/bam/af2260462471ff45ac18af159b1327ea51d8db15/bam/data.bak",
+    files=(
+        PublicFile(
+            "processed/2026-01-15_10h28m10.json",
+            253563,
+            "679215b9bbc50fb95959ce6efe257179e91f1b31ff80df52f8263d9f59ac8204",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h28m17.json",
+            235858,
+            "3d0dbbc5508530d7f63249bfcc8f9933c12b8e59909eef9b021038be69219e38",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h28m24.json",
+            247266,
+            "1881386668c9dfa66850c7214be2a5d322c92cface018db161f49523b778bed1",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h28m32.json",
+            253558,
+            "c34fd5cbbbf915d007afab009ead4dce1f5e29b171aa590967baf13bc69beb0e",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h29m14.json",
+            254687,
+            "f283c4136a7215c5a537ad634d20f537e5a336e2af609492bd2d6aade6b50c5e",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h29m21.json",
+            244110,
+            "d58d17d74df27283372e198f4bd437628054c8f4e7185a48244545d3fa5063ab",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h29m29.json",
+            239952,
+            "e4375867cea77647788f8035a37a9ab356b6b1cebb0aad8c5aeb0336d7510226",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h29m37.json",
+            255544,
+            "4e3e1d059424c0530de67919e5e20038631d7145662fd7f69be34ac3efc02b59",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h29m47.json",
+            253193,
+            "932064f30186ce745c77dd4c6e25d7b247aea2e496cc33aefe3e884bcda50220",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h29m54.json",
+            239639,
+            "d98925d044ad923eccea60eaa03dc5453f985183bf0459f46945b297a707b3d1",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h30m02.json",
+            243113,
+            "4fed9230bf6a345216778f23b34bf92a62126c84188d5a7ec5d742d691e1bcce",
+        ),
+        PublicFile(
+            "processed/2026-01-15_10h30m10.json",
+            254895,
+            "b642f484cc2928b0b782f09cab7bc30b6d6cbff2097f7b96b420a230a355fe62",
+        ),
+    ),
+    write=write_bam,
+)
+_ALL = {dataset.name: dataset for dataset in (_EMPS, _BAM)}
 
 
 def list_datasets() -> dict[str, PublicDataset]:
@@ -127,7 +199,11 @@ def _download(
     cache = Path(pooch.os_cache("tendonlab")) / dataset.name
     try:
         found: str = pooch.retrieve(
-            address, known_hash=f"sha256:{file.sha256}", fname=file.name, path=cache, downloader=downloader
+            address,
+            known_hash=f"sha256:{file.sha256}",
+            fname=Path(file.name).name,
+            path=cache,
+            downloader=downloader,
         )
     except (OSError, ValueError) as error:  # requests' own errors are OSErrors
         looked = ", ".join(map(str, [*searched, cache]))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from tendonlab.data.public import write_folder
 from tendonlab.errors import DatasetError
 
 RECORDS = {"DATA_EMPS.mat": ("estimation", "train"), "DATA_EMPS_PULSES.mat": ("pulses", "test")}
@@ -86,16 +86,8 @@ def write_emps(files: dict[str, Path], out: Path) -> None:
     from scipy.io import loadmat
 
     records = {name: loadmat(path) for name, path in files.items()}
-    text = _describe(records)
-    existing = out / "dataset.toml"
-    if existing.exists() and existing.read_text(encoding="utf-8") != text:
-        raise DatasetError(
-            f"{existing}: is there and differs from what would be written; remove it or give another out"
-        )
-    out.mkdir(parents=True, exist_ok=True)
-    for name, record in records.items():
-        _replace(out / f"{RECORDS[name][0]}.csv", _to_csv(name, record))
-    _replace(existing, text)
+    rows = {f"{RECORDS[name][0]}.csv": _to_csv(name, record) for name, record in records.items()}
+    write_folder(out, _describe(records), rows)
 
 
 def _describe(records: dict[str, dict[str, Any]]) -> str:
@@ -130,10 +122,3 @@ def _scalar(file: str, record: dict[str, Any], name: str) -> float:
     if vector.size != 1:
         raise DatasetError(f"{file}: {name!r} has {vector.size} values; expected one")
     return float(vector[0])
-
-
-def _replace(path: Path, text: str) -> None:
-    """Write at once or not at all, so that an interrupted run leaves no half file."""
-    partial = path.with_name(f"{path.name}.partial")
-    partial.write_text(text, encoding="utf-8", newline="")
-    os.replace(partial, path)

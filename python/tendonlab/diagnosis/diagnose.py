@@ -19,6 +19,7 @@ from tendonlab.diagnosis.holding import straight_inputs
 from tendonlab.diagnosis.late import checked_again
 from tendonlab.diagnosis.search.select import Search, select_effects
 from tendonlab.diagnosis.search.workshop import Workshop, open_workshop
+from tendonlab.diagnosis.windows import in_windows
 from tendonlab.errors import DatasetError, NumericalError, ParameterError
 from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
@@ -91,14 +92,20 @@ def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
 
 
 def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None, tuple[str, ...]]:
-    """What `_searched` finds, and a warning where inputs were not held between their samples: if nobody states that
-    they are, they are taken as straight."""
+    """What `_searched` finds, and warnings: where inputs were not held between their samples (if nobody states that
+    they are, they are taken as straight), and where models were weighed in short windows."""
+    words: tuple[str, ...] = ()
     dataset = with_found_resolutions(dataset)
     found = _searched(dataset, system, shop)
-    drawn = straight_inputs(dataset, system, found[0], shop)
-    if drawn is None:
-        return *found, ()
-    return *(found if drawn.is_stated_otherwise else _searched(drawn.dataset, system, shop)), (drawn.words,)
+    if drawn := straight_inputs(dataset, system, found[0], shop):
+        words = (drawn.words,)
+        if not drawn.is_stated_otherwise:
+            dataset, found = drawn.dataset, _searched(drawn.dataset, system, shop)
+    if parts := in_windows(dataset, found[0]):
+        again = _searched(parts[0], system, shop)
+        if again[0].selected:
+            found, words = again, (*words, parts[1])
+    return *found, words
 
 
 def _searched(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None]:

@@ -1,5 +1,5 @@
 """What is free in a fit and what is believed of it beforehand: the user's `sd`, else the library's defaults, scaled to
-the rig by what it was seen to do (0.3 in log, 0.6 for damping; effects 3 of their unit, shapes 0.7 in log,
+the rig by what it was seen to do (0.3 in log, 0.6 for friction and damping; effects 3 of their unit, shapes 0.7 in log,
 fractions 0.3)."""
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from tendonlab import _core
 from tendonlab._core import Free
 from tendonlab.data import NominalParameter
 from tendonlab.errors import ParameterError
-from tendonlab.simulation.catalog import DIMENSIONS, PORT_QUANTITIES, ParameterInfo
+from tendonlab.simulation.catalog import DIMENSIONS, PORT_QUANTITIES, ParameterInfo, SystemInfo
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System
 
 OF_TORQUE = ("inertia", "effort", "damping", "stiffness")  # dimensions that scale with all torques
-LOG_SD, DAMPING_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 3.0
+LOG_SD, FRICTION_LOG_SD, SHAPE_LOG_SD, AMPLITUDE_SD = 0.3, 0.6, 0.7, 3.0
 FRACTION_SD = 0.3  # of a shape that lies between 0 and 1
 
 
@@ -91,7 +91,7 @@ def free_parameters(
         stated = nominal.get(p.name)
         if stated is None or stated.sd == 0 or (stated.sd is None and known_by_default(p, stated.value)):
             continue
-        rows.append(_nominal_parameter(index, p, stated, scale))
+        rows.append(_nominal_parameter(info, index, p, stated, scale))
     if not rows:
         raise ParameterError("no parameter is free: expected at least one with sd > 0 or without sd")
     return rows
@@ -132,12 +132,13 @@ def is_fraction(p: ParameterInfo) -> bool:
     return p.purpose == "shape" and (p.lower, p.upper) == (0.0, 1.0)
 
 
-def default_log_sd(p: ParameterInfo) -> float:
-    """Prior sd of the logarithm of a parameter that is stated without an `sd`."""
-    return DAMPING_LOG_SD if p.dimension == "damping" else LOG_SD
+def default_log_sd(info: SystemInfo, p: ParameterInfo) -> float:
+    """Prior sd of the logarithm of a parameter that is stated without an `sd`. Friction varies most, and where it was
+    tuned without an effect it stands in for that."""
+    return FRICTION_LOG_SD if info.is_friction(p) else LOG_SD
 
 
-def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, scale: float) -> Free:
+def _nominal_parameter(info: SystemInfo, index: int, p: ParameterInfo, stated: NominalParameter, scale: float) -> Free:
     lower, upper = max(p.lower, stated.lower), min(p.upper, stated.upper)
 
     def free(scale: float, mean: float, sd: float, *, log: bool = False) -> Free:
@@ -156,7 +157,7 @@ def _nominal_parameter(index: int, p: ParameterInfo, stated: NominalParameter, s
     if is_fraction(p) and stated.sd is None:
         return free(FRACTION_SD, stated.value / FRACTION_SD, 1.0)
     if p.lower >= 0 and stated.value > 0 and not is_fraction(p):
-        sd = default_log_sd(p) if stated.sd is None else stated.sd / stated.value
+        sd = default_log_sd(info, p) if stated.sd is None else stated.sd / stated.value
         return free(stated.value, 0.0, sd, log=True)
     usual = max(AMPLITUDE_SD * scale, LOG_SD * abs(stated.value))
     if stated.sd is None or math.isinf(stated.sd):  # inf: nothing is believed, and the scale only measures

@@ -46,6 +46,13 @@ class SystemInfo(_core.SystemInfo):
         """The element of that name; ParameterError, with the nearest name, where there is none."""
         return _named(self._elements, name, f"element of {self.kind}")
 
+    def is_friction(self, p: ParameterInfo) -> bool:
+        """Whether a parameter is the size of dry or viscous friction."""
+        if p.dimension == "damping":
+            return True
+        law = self._effects.get(f"{p.element}:{p.effect}")
+        return p.dimension == "effort" and p.amplitude and law is not None and bool(law.roles & LEVEL)
+
     @property
     def signals(self) -> tuple[InputInfo | OutputInfo, ...]:
         """Inputs, then outputs."""

@@ -1,0 +1,32 @@
+"""A measured servo: friction in proportion to the load is named, and what else is missing stays unknown."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tendonlab as tl
+from tendonlab.data.datasets import prepare
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    if not (Path(os.environ.get("TENDONLAB_DATA", "")) / "bam_xl330" / "processed").is_dir():
+        pytest.skip("the records of the servo are not there: TENDONLAB_DATA names no folder with bam_xl330/processed")
+    return tl.diagnose(tl.load(prepare("bam_xl330", out=tmp_path_factory.mktemp("servo") / "rig")), progress=False)
+
+
+def test_load_dependent_friction_is_named_and_something_else_is_missing(found: Any) -> None:
+    """As its authors found (Duclusaud, Passault, Padois, Ly, ICRA 2025)."""
+    assert found.verdict == "unknown_effect"
+    assert found.selected == ("joint:load_dependence",)
+    assert any("weighed by parts of 1 s" in warning for warning in found.warnings)
+
+
+def test_the_held_out_gain_is_predicted_far_better_with_it(found: Any) -> None:
+    errors = found.gap["joint_angle"]
+    assert errors["refitted"] > 0.09
+    assert errors["with_effect"] < 0.065
