@@ -68,6 +68,29 @@ def test_strong_friction_that_the_simulator_lacks_turns_no_velocity(tmp_path: Pa
     assert [f for f in tl.check(tl.load(tmp_path / "rig")).findings if f.blocks] == []
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_dry_friction_lowers_what_a_sheath_passes_on(tmp_path: Path, turned: bool) -> None:
+    """Beside a simulator that contains none at all. On an instrument's cables the right sign was blamed."""
+    time, random = np.arange(0.0, 8.0, 0.01), np.random.default_rng(0)
+    text = 'format = "tendonlab-dataset/1"\nname = "sheath"\n[system]\nkind = "bowden_pair"\nnominal_effects = []\n'
+    text += "[system.parameters]\ninput_radius = { value = 1.0, sd = 0.0 }\noutput_radius = { value = 0.9, sd = 0.1 }\n"
+    for name, value in {"sheath_length": 0.5, "cable_stiffness": 1e5, "threshold_velocity": 0.0}.items():
+        text += f"{name} = {{ value = {value}, sd = 0.0 }}\n"
+    text += "threshold_slope = { value = 1e9, sd = 0.0 }\ngate_share = { value = 0.0, sd = 0.0 }\n"
+    text += "[signals]\n" + "".join(f"{name} = {{}}\n" for name in ("input_torque", "input_velocity", "output_torque"))
+    for k in range(4):
+        velocity = np.sin(2.0 * np.pi * (0.2 + 0.1 * k) * time)
+        torque = 0.04 + 0.004 * np.sin(2.0 * np.pi * 0.15 * time)
+        passed = 0.88 * torque - 0.05 * np.sign(velocity) + 1e-4 * random.standard_normal(len(time))
+        columns = np.column_stack([time, torque, -velocity if turned else velocity, passed])
+        head = "t,input_torque,input_velocity,output_torque"
+        np.savetxt(tmp_path / f"{k}.csv", columns, delimiter=",", header=head, comments="")
+        text += f'[[experiments]]\nname = "{k}"\nfile = "{k}.csv"\n'
+    (tmp_path / "dataset.toml").write_text(text)
+    blocking = [(f.problem, f.signal) for f in tl.check(tl.load(tmp_path)).findings if f.blocks]
+    assert blocking == ([("sign", "input_velocity")] if turned else [])
+
+
 @pytest.mark.parametrize("signal", ["tension_21", "tension_22"])
 def test_a_cable_that_pushes_was_logged_with_the_wrong_sign(tmp_path: Path, signal: str) -> None:
     """Also one that friction holds, whose equation explains too little to judge by."""

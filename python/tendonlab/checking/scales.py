@@ -33,6 +33,7 @@ LATEST, MOST_LAGS = 0.05, 8  # s: lags of outputs that are tried before a factor
 LEAST_GAIN = 10.0  # nats by which a factor must improve on none
 ALIKE, ALIKE_SHARE = 3.0, 0.02  # nats within which factors of different channels are equally good
 EXACT = 0.02  # relative distance at which a factor is the ratio of two units
+FAR = 100.0  # ratio of units that no parameter explains
 MERE = 0.9  # share of the gain of a negative factor at which a mere sign is believed,
 HEALED = 0.1  # and share of the level of an equation that such a sign leaves
 AWAY = RATIO**-6  # of a channel that is explained away
@@ -107,12 +108,14 @@ def _leading(factors: list[Factor]) -> list[Factor]:
 
 def ranked(factors: list[Factor]) -> list[Factor]:
     """By gain, one for each set of channels. The ratio of two units counts as equally good within the slack in which
-    channels do: it is far likelier than a ratio near it."""
+    channels do: it is far likelier than a ratio near it, and more so than one that strains beliefs."""
     slack = ALIKE + ALIKE_SHARE * max(f.gain for f in factors)
     ordered = sorted(factors, key=lambda f: f.gain + slack * f.exact, reverse=True)
     best: dict[tuple[str, ...], Factor] = {}
     for factor in ordered:
-        best.setdefault(factor.signals, factor)
+        known = best.setdefault(factor.signals, factor)
+        if factor.exact and factor.fit.strain < CREDIBLE < known.fit.strain:
+            best[factor.signals] = factor
     return list(best.values())
 
 
@@ -171,12 +174,14 @@ def _helps(fit: Fit, base: Fit, told: np.ndarray) -> bool:
 
 def _convinces(factor: Factor, base: Fit, told: np.ndarray) -> bool:
     """Whether the logs, once corrected, suit the simulator anywhere: an equation balances, or the beliefs suit it. Or
-    the factor is the ratio of two units, and nears balance where the logs as they are were far from any."""
+    the factor is the ratio of two units, and nears balance where the logs as they are were far from any, or where the
+    ratio is so large that no parameter explains it."""
     fit = factor.fit
     if fit.strain < STRAINED or np.any(fit.level[told] < BALANCED):
         return True
     exact = factor.value > 0 and abs(np.log(factor.value / nearest(factor.value).ratio)) < EXACT
-    return bool(exact and _heals(fit, base, told) and np.all(fit.level[told] < NEARLY))
+    far = _heals(fit, base, told) or (fit.strain < CREDIBLE and abs(np.log(abs(factor.value))) > np.log(FAR))
+    return bool(exact and far and np.all(fit.level[told] < NEARLY))
 
 
 def _suits_late(equation: Equation, logs: Logs, factor: Factor, share: np.ndarray) -> bool:

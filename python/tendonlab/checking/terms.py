@@ -190,12 +190,12 @@ def _extras(equation: Equation, logs: Logs, size: np.ndarray) -> Iterator[Column
 
 
 def sliding(equation: Equation, logs: Logs, k: int) -> np.ndarray | None:
-    """The velocity that friction in equation k follows: of the axis, or, as friction lowers what is transmitted, less
-    the logged one of a system without degrees of freedom."""
+    """The velocity that friction in equation k follows: of the axis, or the logged one of a system without degrees of
+    freedom."""
     if k < len(equation.moved):
         return np.asarray(logs.moving[equation.moved[k]][1])
     flows = [s.name for s in equation.system.info.inputs if s.dimension == "flow" and s.name in logs.driving]
-    return -logs.driving[flows[0]][0] if flows and not equation.system.info.dof else None
+    return logs.driving[flows[0]][0] if flows and not equation.system.info.dof else None
 
 
 def slopes_of_lags(equation: Equation, logs: Logs, at: np.ndarray, kept: np.ndarray | None = None) -> np.ndarray:
