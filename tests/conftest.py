@@ -14,6 +14,7 @@ from matplotlib import pyplot as plt
 
 import budget
 import diagnoses
+from tendonlab.data.datasets import prepare
 from twin import TwinDiagnosis, run_demo
 
 matplotlib.use("Agg")
@@ -70,3 +71,11 @@ def _no_figure_is_left_open() -> Iterator[None]:
 def twin_diagnosis(tmp_path_factory: pytest.TempPathFactory) -> TwinDiagnosis:
     """The diagnosis of the bundled rig, by far the longest run of all tests: once, as a user runs it."""
     return run_demo(tmp_path_factory.mktemp("demo"))
+
+
+@pytest.fixture(scope="session")
+def measured_servo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The dataset of a servo that others measured."""
+    if not (Path(os.environ.get("TENDONLAB_DATA", "")) / "bam_xl330" / "processed").is_dir():
+        pytest.skip("the records of the servo are not there: TENDONLAB_DATA names no folder with bam_xl330/processed")
+    return prepare("bam_xl330", out=tmp_path_factory.mktemp("servo") / "rig")

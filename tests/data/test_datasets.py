@@ -159,14 +159,9 @@ def test_eight_bit_pulses_become_signed_volts(tmp_path):
     assert list(-dataset["pulses"].data["disturbance_voltage"]) == [0.0, -5.0, -5.0, 0.0]
 
 
-SERVO = "bam_xl330"
-
-
-def test_a_measured_servo_is_a_dataset_with_a_gain_for_each_record(tmp_path):
+def test_a_measured_servo_is_a_dataset_with_a_gain_for_each_record(measured_servo):
     """Three gains and four motions; the middle gain is held out."""
-    if not (Path(os.environ.get("TENDONLAB_DATA", "")) / SERVO / "processed").is_dir():
-        pytest.skip(f"the records of the servo are not there: TENDONLAB_DATA names no folder with {SERVO}/processed")
-    dataset = load(prepare(SERVO, out=tmp_path / "rig"))
+    dataset = load(measured_servo)
     gains = {e.name: e.conditions["proportional_gain"] for e in dataset.experiments}
     assert len(gains) == 12
     assert gains["sin_sin-100"] == pytest.approx(100 * 4096 / (2 * np.pi) / (256 * 885) * 7.3, rel=1e-5)

@@ -1,22 +1,18 @@
 """A measured servo: friction in proportion to the load is named, and what else is missing stays unknown."""
 
-import os
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import tendonlab as tl
-from tendonlab.data.datasets import prepare
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    if not (Path(os.environ.get("TENDONLAB_DATA", "")) / "bam_xl330" / "processed").is_dir():
-        pytest.skip("the records of the servo are not there: TENDONLAB_DATA names no folder with bam_xl330/processed")
-    return tl.diagnose(tl.load(prepare("bam_xl330", out=tmp_path_factory.mktemp("servo") / "rig")), progress=False)
+def found(measured_servo: Path) -> Any:
+    return tl.diagnose(tl.load(measured_servo), progress=False)
 
 
 def test_load_dependent_friction_is_named_and_something_else_is_missing(found: Any) -> None:

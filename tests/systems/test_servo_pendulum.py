@@ -1,9 +1,7 @@
 """A servo under its own position control: what pen and paper give, exact derivatives, and a measured servo."""
 
-import json
-import os
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -93,65 +91,19 @@ def test_derivatives_match_differences(name: str) -> None:
 
 # A measured servo: Duclusaud, Passault, Padois, Ly, ICRA 2025. A pendulum of 0.49 kg at 0.10 m.
 
-RECORDS = Path(os.environ.get("TENDONLAB_DATA", "")) / "bam_xl330" / "processed"
-VOLTS_PER_GAIN = 4096.0 / (2.0 * np.pi) / (256.0 * 885.0) * 7.3  # per rad and unit of gain, at the mean supply voltage
-DATASET = """
-format = "tendonlab-dataset/1"
-name   = "servo"
 
-[system]
-kind = "servo_pendulum"
-
-[system.parameters]
-inertia           = { value = 0.0049, sd = 0.0005 }
-armature          = { value = 0.002, sd = 0.002 }
-gravity_torque    = { value = 0.481, sd = 0.05 }
-torque_constant   = { value = 0.46, sd = 0.1 }
-resistance        = { value = 3.4, sd = 2.0 }
-proportional_gain = { value = 5.0, sd = 0.0 }
-voltage_limit     = { value = 7.3, sd = 0.0 }
-angle_offset      = { value = 0.0, sd = 0.05 }
-coulomb           = { value = 0.02 }
-viscous           = { value = 0.01 }
-
-[signals]
-target_angle   = { column = "goal_position" }
-supply_voltage = { column = "input_volts" }
-torque_enable  = { column = "torque_enable" }
-joint_angle    = { column = "position", resolution = 0.0015 }
-"""
-
-
-def write(folder: Path, records: list[dict[str, Any]]) -> None:
-    """A dataset of these records, each with its own gain."""
-    text = DATASET
-    columns = ("goal_position", "input_volts", "torque_enable", "position")
-    for number, record in enumerate(records):
-        rows = [[k * record["dt"], *(float(row[name]) for name in columns)] for k, row in enumerate(record["entries"])]
-        head = ",".join(("t", *columns))
-        np.savetxt(folder / f"{number}.csv", rows, delimiter=",", header=head, comments="")
-        gain = record["kp"] * VOLTS_PER_GAIN
-        text += f'\n[[experiments]]\nname = "{number}"\nfile = "{number}.csv"\n'
-        text += f'split = "{"test" if record["kp"] == 800 else "train"}"\n'
-        text += f"conditions = {{ proportional_gain = {gain} }}\n"
-    (folder / "dataset.toml").write_text(text, encoding="utf-8")
-
-
-@pytest.mark.skipif(not RECORDS.is_dir(), reason="TENDONLAB_DATA names no folder with bam_xl330/processed")
-def test_a_measured_servo_with_another_gain_is_predicted_better_than_guessed(tmp_path: Path) -> None:
-    records = [json.loads(path.read_text()) for path in sorted(RECORDS.glob("*.json"))]
-    write(tmp_path, [r for r in records if r["trajectory"] in ("sin_sin", "lift_and_drop")])
-    rig = tl.load(tmp_path)
+def test_a_measured_servo_with_another_gain_is_predicted_better_than_guessed(measured_servo: Path) -> None:
+    logged = tl.load(measured_servo)
+    some = tuple(e for e in logged.experiments if e.name.startswith(("sin_sin", "lift_and_drop")))
+    rig = replace(logged, experiments=some)
     fit = tl.identify(rig, progress=False)
     assert fit.converged
-    assert errors(fit.system, rig) < 0.75 * errors(rig.system(), rig)  # 0.106 rad against 0.168 rad
+    assert errors(fit.system, rig) < 0.75 * errors(rig.system(), rig)
 
 
-@pytest.mark.skipif(not RECORDS.is_dir(), reason="TENDONLAB_DATA names no folder with bam_xl330/processed")
-def test_no_log_of_a_measured_servo_is_blamed(tmp_path: Path) -> None:
+def test_no_log_of_a_measured_servo_is_blamed(measured_servo: Path) -> None:
     """Its motor is known from a data sheet only, and its friction depends on the load."""
-    write(tmp_path, [json.loads(path.read_text()) for path in sorted(RECORDS.glob("*.json"))])
-    assert not tl.check(tl.load(tmp_path)).blocks
+    assert not tl.check(tl.load(measured_servo)).blocks
 
 
 def errors(system: tl.System, rig: tl.Dataset) -> float:
