@@ -78,8 +78,8 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack or (f.exact and is_calm(f.fit, plain))]
     fine = logs.thinned(FINE)
     share = told * independent(best, equation, fine)
-    exact = np.fmax(plain.level, best.fit.level) < NOISELESS
-    share = np.where(exact & np.any(~exact & told), np.fmin(share, ROUGH_SHARE * ROUGH / FINE), share)
+    noiseless = np.fmax(plain.level, best.fit.level) < NOISELESS
+    share = np.where(noiseless & np.any(~noiseless & told), np.fmin(share, ROUGH_SHARE * ROUGH / FINE), share)
     base = terms(equation, fine).fit(share)
     polished = [_refined(equation, fine, f, share, 1.3, 1e-2) for f in found]
     polished = [_mere_sign(equation, fine, f, share, base, told) for f in polished]
@@ -101,9 +101,9 @@ def _leading(factors: list[Factor]) -> list[Factor]:
     """The best of those that a search found, and of the units of single channels that strain no belief: each of these
     channels is among the former with any factor, and would take the place of others."""
     by_cost = sorted(factors, key=lambda f: f.fit.cost)
-    units = [f for f in by_cost if f.exact and len(f.signals) == 1]
-    free = [f for f in by_cost if not (f.exact and len(f.signals) == 1)]
-    return [*free[:REFINED], *[f for f in units if f.fit.strain < CREDIBLE][:REFINED]]
+    others = [f for f in by_cost if not f.exact or len(f.signals) > 1]
+    units = [f for f in by_cost if f.exact and len(f.signals) == 1 and f.fit.strain < CREDIBLE]
+    return [*others[:REFINED], *units[:REFINED]]
 
 
 def ranked(factors: list[Factor]) -> list[Factor]:
