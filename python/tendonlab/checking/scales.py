@@ -87,6 +87,8 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     best = judged[0]
     if best.gain < LEAST_GAIN or not _blocks(best.value, least) or np.any(best.fit.level[told] > EXPLAINED):
         return []
+    if any(not _blocks(f.value, least) and f.gain > best.gain - LEAST_GAIN for f in judged):
+        return []  # a parameter says nearly the same
     if not _helps(best.fit, base, told) or not _convinces(best, base, told) or _suits_late(equation, logs, best, share):
         return []
     if only_turns(equation, best.signals):  # of any size: its sign must be what the beliefs ask for
