@@ -20,6 +20,7 @@ def test_load_dependent_friction_is_named_and_something_else_is_missing(found: A
     assert found.verdict == "unknown_effect"
     assert found.selected == ("joint:load_dependence",)
     assert any("weighed by parts of 1 s" in warning for warning in found.warnings)
+    assert not found.calibrated  # no blind series was weighed so
 
 
 def test_the_held_out_gain_is_predicted_far_better_with_it(found: Any) -> None:

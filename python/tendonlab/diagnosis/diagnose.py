@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from tendonlab.checking.check import check
 from tendonlab.checking.samples import FEWEST
@@ -42,6 +43,18 @@ FORCED = "The check found problems in the logs that mislead a diagnosis. The dia
 log = logging.getLogger("tendonlab")
 
 
+class _Found(NamedTuple):
+    """A finished search; the untouched simulator, fitted in its initial states alone; the logs with their controller,
+    where models were weighed without; warnings; whether models were weighed in short windows, as no series of simulated
+    rigs was whose truth is known."""
+
+    search: Search
+    nominal: Fitted
+    loop: Case | None
+    doubts: tuple[str, ...] = ()
+    in_parts: bool = False
+
+
 @with_one_blas_thread
 def diagnose(
     dataset: Dataset,
@@ -73,13 +86,14 @@ def diagnose(
         dataset = without_outliers(dataset)
     system = dataset.system() if system is None else system
     with open_workshop(names, progress=progress) as shop:
-        search, nominal, loop, doubts = _search(dataset, system, shop)
-        found = checked_again(found, dataset, search)
+        of = _search(dataset, system, shop)
+        found = checked_again(found, dataset, of.search)
         if found.blocks and not force:
             return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
-        why = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
-    warnings = (*((FORCED,) if found.blocks else ()), *doubts, *why.warnings)
-    return replace(why, data=tuple(finding.to_dict() for finding in found.findings), warnings=warnings)
+        why = answer(of.search, of.nominal, of.loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
+    warnings = (*((FORCED,) if found.blocks else ()), *of.doubts, *why.warnings)
+    data = tuple(finding.to_dict() for finding in found.findings)
+    return replace(why, data=data, warnings=warnings, calibrated=why.calibrated and not of.in_parts)
 
 
 @with_one_blas_thread
@@ -88,29 +102,27 @@ def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
     system = dataset.system()
     _require_samples(dataset)
     with open_workshop(None, progress=progress) as shop:
-        return _search(dataset, system, shop)[0].final
+        return _search(dataset, system, shop).search.final
 
 
-def _search(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None, tuple[str, ...]]:
+def _search(dataset: Dataset, system: System, shop: Workshop) -> _Found:
     """What `_searched` finds, and warnings: where inputs were not held between their samples (if nobody states that
     they are, they are taken as straight), and where models were weighed in short windows."""
-    words: tuple[str, ...] = ()
     dataset = with_found_resolutions(dataset)
     found = _searched(dataset, system, shop)
-    if drawn := straight_inputs(dataset, system, found[0], shop):
-        words = (drawn.words,)
+    if drawn := straight_inputs(dataset, system, found.search, shop):
         if not drawn.is_stated_otherwise:
             dataset, found = drawn.dataset, _searched(drawn.dataset, system, shop)
-    if parts := in_windows(dataset, found[0]):
+        found = found._replace(doubts=(drawn.words,))
+    if parts := in_windows(dataset, found.search):
         again = _searched(parts[0], system, shop)
-        if again[0].selected:
-            found, words = again, (*words, parts[1])
-    return *found, words
+        if again.search.selected:
+            return again._replace(doubts=(*found.doubts, parts[1]), in_parts=True)
+    return found
 
 
-def _searched(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search, Fitted, Case | None]:
-    """A finished search; the untouched simulator, fitted in its initial states alone; and the logs with their
-    controller, where models were weighed without."""
+def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Found:
+    """A search of the thinned logs under the noise floor that they show."""
     few = thinned(dataset, system)
     loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
     case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
@@ -126,7 +138,7 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> tuple[Search,
     fitter, tuned = renewed(fitter, tuned, shop.pool)
     search = confirmed(select_effects(fitter, tuned, shop), shop)
     log.info("selected %s", search.selected)
-    return search, nominal, loop
+    return _Found(search, nominal, loop)
 
 
 def _require_samples(dataset: Dataset) -> None:

@@ -47,7 +47,7 @@ class SystemInfo(_core.SystemInfo):
         return _named(self._elements, name, f"element of {self.kind}")
 
     def is_friction(self, p: ParameterInfo) -> bool:
-        """Whether a parameter is the size of dry or viscous friction."""
+        """Whether a parameter is the size of dry friction, or any damping."""
         if p.dimension == "damping":
             return True
         law = self._effects.get(f"{p.element}:{p.effect}")
