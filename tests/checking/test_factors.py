@@ -56,8 +56,16 @@ def test_only_factors_of_the_same_kind_are_alternatives(rig: tl.Dataset) -> None
     )
     assert (found.problem, found.signal, found.alternatives) == ("sign", "joint_angle", ("motor_torque",))
     assert (found.factor, found.blocks) == (-1.0, True)
-    assert "turn the sign of joint_angle or motor_torque (one of them)" in found.detail
+    assert "turn the sign of joint_angle, or of motor_torque" in found.detail
     assert "size" not in found.detail
+
+
+def test_channels_that_are_turned_together_are_told_together(rig: tl.Dataset) -> None:
+    """On a rig with two angles one of them alone, turned, would be a second mistake."""
+    found = factor_findings([factor(-1.0, "motor_torque"), factor(-1.0, "motor_angle", "joint_angle")], rig)
+    assert [f.detail.split("; ")[1] for f in found] == [
+        "turn the sign of motor_torque, or of motor_angle and joint_angle"
+    ]
 
 
 def test_a_sign_with_a_wrong_size_says_both(rig: tl.Dataset) -> None:

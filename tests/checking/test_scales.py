@@ -13,7 +13,7 @@ from tendonlab.checking.scales import (
     _helps,
     _is_credible,
     _leading,
-    is_calm,
+    agrees,
     ranked,
     shares,
 )
@@ -91,7 +91,7 @@ def test_a_corrected_scale_may_strain_beliefs_where_it_brings_an_equation_to_bal
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "strain", "calm"),
+    ("before", "after", "strain", "agree"),
     [
         ([0.65], [0.0018], 0.99, True),  # the right unit of a sheath's output,
         ([0.65], [0.0002], 11.4, False),  # and another torque, beside friction eleven sd away
@@ -102,10 +102,10 @@ def test_a_corrected_scale_may_strain_beliefs_where_it_brings_an_equation_to_bal
         ([0.3, 0.3], [0.2, 0.2], 0.5, False),
     ],
 )
-def test_a_calm_correction_heals_or_balances_and_strains_nothing(
-    before: list[float], after: list[float], strain: float, calm: bool
+def test_a_correction_that_agrees_heals_or_balances_and_strains_nothing(
+    before: list[float], after: list[float], strain: float, agree: bool
 ) -> None:
-    assert is_calm(left(after, strain), left(before, 6.0)) == calm
+    assert agrees(left(after, strain), left(before, 6.0)) == agree
 
 
 def factor(signal: str, value: float, gain: float, *, exact: bool = False) -> Factor:

@@ -21,12 +21,12 @@ def factor_findings(factors: Sequence[Factor], dataset: Dataset) -> list[Finding
         return []
     best = factors[0]
     kind = "sign" if best.value < 0 else "scale"
-    others = [name for f in factors[1:] if (f.value < 0) == (best.value < 0) for name in f.signals]
-    alternatives = tuple(dict.fromkeys(name for name in others if name not in best.signals))
+    ways = list(dict.fromkeys(f.signals for f in factors if (f.value < 0) == (best.value < 0)))
+    alternatives = tuple(dict.fromkeys(name for way in ways for name in way if name not in best.signals))
 
     def details(name: str) -> str:
         if kind == "sign":
-            return _sign_words(name, best.value, alternatives)
+            return _sign_words(best.value, ways)
         return _scale_words(name, best.value, alternatives, dataset)
 
     return [
@@ -42,11 +42,11 @@ def factor_findings(factors: Sequence[Factor], dataset: Dataset) -> list[Finding
     ]
 
 
-def _sign_words(name: str, value: float, alternatives: Sequence[str]) -> str:
+def _sign_words(value: float, ways: Sequence[tuple[str, ...]]) -> str:
     text = f"the efforts that the motion needs come out {number(value)} times as stated"
     size = f". Their size is wrong as well{_hint(-value)}" if abs(math.log(-value)) > math.log(BLOCKING) else ""
-    turn = f"turn the sign of {' or '.join([name, *alternatives])}{' (one of them)' if alternatives else ''}"
-    return f"{text}; {turn}{size}"
+    each = [" and ".join(way) for way in ways]
+    return f"{text}; turn the sign of {', or of '.join(each)}{size}"
 
 
 def _scale_words(name: str, value: float, alternatives: Sequence[str], dataset: Dataset) -> str:

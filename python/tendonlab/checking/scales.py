@@ -67,7 +67,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     leading = _leading(searched)
     found = [_refined(equation, rough, f, share, RATIO, 0.05) for f in leading]
     found = [f for f in found if _is_credible(f, plain, least)]
-    found = [f for f in found if is_calm(f.fit, plain)] or found
+    found = [f for f in found if agrees(f.fit, plain)] or found
     if not found:
         return []
     best = min(found, key=lambda f: f.fit.cost)
@@ -75,7 +75,7 @@ def wrong_factors(equation: Equation, logs: Logs) -> list[Factor]:
     if not told.any() or not _blocks(best.value, least) or plain.cost - best.fit.cost < LEAST_GAIN:
         return []
     slack = LEAST_GAIN + ALIKE_SHARE * (plain.cost - best.fit.cost)
-    found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack or (f.exact and is_calm(f.fit, plain))]
+    found = [f for f in found if f.fit.cost < best.fit.cost + 2.0 * slack or (f.exact and agrees(f.fit, plain))]
     fine = logs.thinned(FINE)
     share = told * independent(best, equation, fine)
     noiseless = np.fmax(plain.level, best.fit.level) < NOISELESS
@@ -139,7 +139,7 @@ def _is_credible(factor: Factor, plain: Fit, least: float) -> bool:
     return bool(np.any((factor.fit.level < NEARLY) & (factor.fit.level < SETTLED * plain.level)))
 
 
-def is_calm(fit: Fit, plain: Fit) -> bool:
+def agrees(fit: Fit, plain: Fit) -> bool:
     """Whether corrected logs strain no belief, and balance, or heal an equation and leave none worse than nothing.
     Beside such a correction none that strains beliefs counts: far more friction than stated suits a sheath whose output
     is in N*mm to a tenth of what its right unit leaves."""
@@ -243,6 +243,11 @@ def _fitted(
     equation: Equation, logs: Logs, signals: tuple[str, ...], value: float, share: np.ndarray, steps: int = MOST_STEPS
 ) -> Fit:
     return terms(equation, logs.scaled(signals, value)).fit(share, steps=steps)
+
+
+def rough_fit(equation: Equation, logs: Logs) -> Fit:
+    """The regression of logs that nobody corrected, before it is known how many samples count."""
+    return terms(equation, logs).fit(np.full(len(equation.predicted), ROUGH_SHARE))
 
 
 def independent(factor: Factor, equation: Equation, logs: Logs) -> np.ndarray:

@@ -7,8 +7,7 @@ import numpy as np
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.logs import TIME, Logs
-from tendonlab.checking.scales import LEAST_GAIN, ROUGH, ROUGH_SHARE
-from tendonlab.checking.terms import terms
+from tendonlab.checking.scales import LEAST_GAIN, ROUGH, rough_fit
 from tendonlab.report.numbers import number
 
 LONGEST, SHORTEST = 0.3, 1e-5  # s from sample to sample, beyond which the unit of the stamps is doubtful
@@ -24,15 +23,11 @@ def strange_steps(equation: Equation, logs: Logs) -> list[Finding]:
     if SHORTEST < step < LONGEST:
         return []
     long, rough = step >= LONGEST, logs.thinned(ROUGH)
-    cost = {f: _cost(equation, rough.scaled((TIME,), f)) for f in (f if long else 1.0 / f for f in FACTORS)}
+    cost = {f: rough_fit(equation, rough.scaled((TIME,), f)).cost for f in (f if long else 1.0 / f for f in FACTORS)}
     factor = min(cost, key=lambda f: cost[f])
     unit = f"a prefix such as milli: {PREFIXES[long]}?"
     text = f"samples are {number(step)} s apart, which is rare for a rig that moves: check the unit of the time column"
-    if not np.isfinite(cost[factor]) or cost[factor] > _cost(equation, rough) - LEAST_GAIN:
+    if not np.isfinite(cost[factor]) or cost[factor] > rough_fit(equation, rough).cost - LEAST_GAIN:
         return [Finding(problem="sampling", signal=TIME, detail=f"{text} ({unit})")]
     seen = f"the time is {number(factor)} times as large as the equation of motion allows"
     return [Finding(problem="scale", signal=TIME, factor=factor, blocks=True, detail=f"{seen} ({unit}); {text}")]
-
-
-def _cost(equation: Equation, logs: Logs) -> float:
-    return terms(equation, logs).fit(np.full(len(equation.predicted), ROUGH_SHARE)).cost
