@@ -35,6 +35,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     monkeypatch.setattr(answer, "patterns", lambda case, model: Patterns(0.25, 0.1, 6.0))
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     monkeypatch.setattr(answer, "strain", lambda case, model: 6.0)
+    monkeypatch.setattr(answer, "restores_belief", lambda case, base, model: model.mean_square < base.mean_square)
     tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
     run = SimpleNamespace(measured=np.array([np.tile([-0.4, 0.4], 10), np.full(20, np.nan), np.tile([-4.0, 4.0], 10)]))
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ()), train=range(5), measured=[0, 2], prepared=[run]))
@@ -51,6 +52,7 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     search.selected, search.final = (), tuned
     none = _levels(search, nominal, stages, stages, floor, Drift("joint", -0.1, 0.001))
     assert (found.drifted, none.drifted) == (1.0, 0.001)
+    assert (found.relieved, none.relieved) == (True, False)
     assert found.strained == none.strained == 6.0
     assert none.explained is None
     assert none.patterns == (0.25, 0.1, 6.0)

@@ -117,6 +117,7 @@ def test_beliefs_confirm_what_gains_mainly_by_them(
 ) -> None:
     """30 nats in any case, and a quarter of what the effect gains."""
     monkeypatch.setattr(confirm, "relief", lambda *models: relieved)
+    monkeypatch.setattr(confirm, "restores_belief", lambda *models: relieved > 30.0)
     search = found(FIRST, repeated=repeated)
     assert bool(confirm.confirmed(search, shop(10.0, 10.0, gain=-1.0)).selected) is kept
     (won,) = search.rounds

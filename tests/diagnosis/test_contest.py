@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tendonlab as tl
 from tendonlab.diagnosis.search import contest
 from tendonlab.diagnosis.search.contest import _worth_adding, probabilities
 from tendonlab.diagnosis.search.refit import _goal, _needed, strained
@@ -329,6 +330,28 @@ def test_candidates_that_tuning_hides_are_refitted_as_well(
     nothing: Any = None
     found = contest._with_hidden(nothing, nothing, screened(chosen), DETECT, shop)
     assert "".join(s.effect for s in found) == expected
+
+
+def test_candidates_that_gained_beside_the_last_winner_are_refitted_from_there() -> None:
+    """In other elements than its own, the best two, which no screen chose."""
+    info = tl.system_info("two_inertia")
+    system = SimpleNamespace(info=info)
+    effects = {
+        "joint:coulomb": 500.0, "joint:stribeck": 400.0, "sensor.joint_angle:bias": 300.0, "load:offset": 200.0,
+        "motor:viscous": 100.0, "motor:coulomb": 50.0, "actuation:gain_error": 5.0,
+    }  # fmt: skip
+    values = {p.name: 0.1 * (k + 1) for k, p in enumerate(info.parameters)}
+    fitted = SimpleNamespace(system=SimpleNamespace(parameters=values))
+    before: Any = SimpleNamespace(trials=[Trial(name, fitted, gain, gain, 0.0) for name, gain in effects.items()])  # type: ignore[arg-type]
+    screened = [Screened(name, 1.0, ({},), 1.0) for name in effects if name != "joint:coulomb"]
+    base: Any = SimpleNamespace(added=("joint:coulomb",), system=system)
+    chosen = [s for s in screened if s.effect == "load:offset"]
+    found = contest._remembered(base, screened, chosen, before)
+    assert [s.effect for s in found] == ["sensor.joint_angle:bias", "motor:viscous"]
+    (start,) = found[1].starts
+    assert start == {p: values[p] for p in info.effect("motor:viscous").parameters}
+    few = [s for s in screened if s.effect == "actuation:gain_error"]
+    assert contest._remembered(base, few, [], before) == []  # gained too little
 
 
 @pytest.mark.parametrize(

@@ -194,14 +194,16 @@ def test_only_the_best_start_is_settled(
 
 
 @pytest.mark.parametrize(
-    ("pulled", "simulated", "left", "nominal"),
-    [(True, True, 5.0, [False, False, True]), (True, True, 1.2, [False, False]), (False, True, 5.0, [False, False]),
-     (True, False, 5.0, [True]), (False, False, 5.0, [True])],
+    ("pulled", "simulated", "before", "left", "nominal"),
+    [(True, True, 9.0, 5.0, [False, False, True]), (True, True, 9.0, 1.2, [False, False]),
+     (True, True, 1.2, 1.1, [False, False, True]), (False, True, 9.0, 5.0, [False, False]),
+     (True, False, 9.0, 5.0, [True]), (False, False, 9.0, 5.0, [True])],
 )  # fmt: skip
 def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tuning_strained_them(
-    pulled: bool, simulated: bool, left: float, nominal: list[bool], monkeypatch: pytest.MonkeyPatch
+    pulled: bool, simulated: bool, before: float, left: float, nominal: list[bool], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Unless a fit comes near the floor; a candidate that was never simulated has no other start."""
+    """Unless a fit comes near the floor, where the base was not; a candidate that was never simulated has no other
+    start."""
     tried = []
 
     def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
@@ -212,7 +214,8 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
     monkeypatch.setattr(refits, "strained", lambda *_: pulled)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    found = refits.refit(nothing, nothing, Screened("b", 1.0, ({}, {}), 1.0, "" if simulated else "stopped"), pace=0.0)
+    base: Any = SimpleNamespace(mean_square=before)
+    found = refits.refit(nothing, base, Screened("b", 1.0, ({}, {}), 1.0, "" if simulated else "stopped"), pace=0.0)
     assert tried == nominal
     assert found is not None
 
@@ -242,5 +245,6 @@ def test_a_candidate_that_promises_little_there_is_not_fitted_from_nominal_value
     monkeypatch.setattr(refits, "strained", lambda *_: True)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    refits.refit(nothing, nothing, Screened("b", 1.0, ({},), 1.0, poor_when_believed=poor), pace=0.0)
+    base: Any = SimpleNamespace(mean_square=9.0)
+    refits.refit(nothing, base, Screened("b", 1.0, ({},), 1.0, poor_when_believed=poor), pace=0.0)
     assert tried == ([False] if poor else [False, True])

@@ -239,7 +239,7 @@ class Script:
     """A search whose rounds accept the effects of `gains` in turn, and whose sets may be improved on."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, effects: Sequence[str], improved: Sequence[Any] = ()) -> None:
-        self.effects, self.improved, self.rounds = list(effects), list(improved), 0
+        self.effects, self.improved, self.rounds, self.places = list(effects), list(improved), 0, 0
         monkeypatch.setattr(select, "next_effect", self.next_effect)
         monkeypatch.setattr(select, "contest_each_place", self.contest)
         monkeypatch.setattr(select, "improve", lambda *_: self.improved.pop(0) if self.improved else None)
@@ -248,12 +248,15 @@ class Script:
             select, "_models_before", lambda _, m: [model(*m.added[:k]) for k in range(1, len(m.added))]
         )
 
-    def next_effect(self, fitter: Any, base: Any, *, largest_gain: float, shop: Any) -> Any:
+    def next_effect(self, fitter: Any, base: Any, *, largest_gain: float, shop: Any, before: Any = None) -> Any:
         self.rounds += 1
+        if len(base.added) > 0 and not self.places:  # the contest that the last effect won is remembered
+            assert before.accepted.effect == base.added[-1]
         won = trial(self.effects.pop(0), 50.0, *base.added) if self.effects else None
         return SimpleNamespace(accepted=won, base=base.added)
 
     def contest(self, fitter: Any, base: Any, places: Any, shop: Any) -> list[Place]:
+        self.places += 1
         return [place(name, 50.0, *(set(base.added) - {name})) for name in base.added]
 
     def run(self) -> Any:

@@ -8,7 +8,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.diagnosis.search.contest import _reliever
-from tendonlab.diagnosis.search.trial import Trial, gain_elsewhere, has_shape, is_no_shape
+from tendonlab.diagnosis.search.trial import Trial, gain_elsewhere, has_shape, is_no_shape, restores_belief
 from tendonlab.simulation.catalog import LEVEL
 
 
@@ -59,14 +59,49 @@ def test_what_acts_on_a_command_a_load_or_a_reading_has_no_shape(kind: str, effe
     assert has_shape(effect, tl.system_info(kind)) is shape
 
 
-@pytest.mark.parametrize(("mean_square", "relieved", "found"), [(1.1, 40.0, "b"), (1.1, 20.0, None), (9.0, 40.0, None)])
-def test_what_relieves_the_beliefs_takes_over_near_the_floor(
-    mean_square: float, relieved: float, found: str | None
+def pulled_to(*sd: float, mean_square: float = 1.1) -> Any:
+    """A model whose stated parameters are that many stated sd from their values, on a scale that is not logarithmic."""
+    free = [SimpleNamespace(name=f"p{k}", mean=1.0, sd=0.1, log=False, value=float) for k in range(len(sd))]
+    return SimpleNamespace(free=free, x=[1.0 + 0.1 * by for by in sd], mean_square=mean_square)
+
+
+def stated(num: int) -> Any:
+    parameters = {f"p{k}": SimpleNamespace(value=1.0, sd=0.1) for k in range(num)}
+    return SimpleNamespace(dataset=SimpleNamespace(parameters=parameters))
+
+
+@pytest.mark.parametrize(
+    ("base", "extended", "restored"),
+    [
+        ((9.0, 0.0), (4.0, 0.0), True),  # 32 nats are enough
+        ((7.5, 0.0), (2.0, 2.0), True),  # 24 nats, and what nobody believed is believed
+        ((6.5, 4.0), (2.0, 2.0), False),  # 25 nats, but each parameter may have been where it was
+        ((7.5, 0.0), (4.5, 0.0), False),  # and may be where it is
+        ((7.5, 0.0), (3.0, 5.5), False),  # 9 nats
+    ],
+)
+def test_an_effect_restores_belief_in_parameters_that_were_pulled_too_far(
+    base: tuple[float, ...], extended: tuple[float, ...], restored: bool
 ) -> None:
-    base: Any = SimpleNamespace(mean_square=mean_square)
-    fitted: Any = None
-    trials = [Trial("a", fitted, 200.0, 200.0, 0.0), Trial("b", fitted, 50.0, 50.0, 0.0, relieved=relieved)]
-    best = _reliever(base, trials, {"a", "b"})
+    assert restores_belief(stated(len(base)), pulled_to(*base), pulled_to(*extended)) is restored
+
+
+@pytest.mark.parametrize(
+    ("mean_square", "gain", "established", "found"),
+    [
+        (1.1, 50.0, {"a", "b"}, "b"),
+        (1.1, 25.0, {"a"}, "b"),  # what beliefs tell needs no higher bar of a further effect
+        (1.1, 9.0, {"a"}, None),
+        (9.0, 50.0, {"a", "b"}, None),
+    ],
+)
+def test_what_relieves_the_beliefs_takes_over_near_the_floor(
+    mean_square: float, gain: float, established: set[str], found: str | None
+) -> None:
+    base = pulled_to(7.5, mean_square=mean_square)
+    trials = [Trial("a", pulled_to(7.4), 200.0, 200.0, 0.0), Trial("b", pulled_to(0.5), gain, gain, 0.0)]
+    fitter: Any = SimpleNamespace(case=stated(1))
+    best = _reliever(fitter, base, trials, established)
     assert (best.effect if best else None) == found
 
 

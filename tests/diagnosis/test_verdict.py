@@ -371,3 +371,17 @@ def test_a_simulator_at_the_floor_has_no_gap() -> None:
     for nominal, tuned in ((1.2, 1.1), (1.4, 1.35)):
         levels = Levels(nominal=nominal, tuned=tuned, refitted=1.0, explained=None, left=1.0, repeated=True)
         assert decide((), (), levels).verdict != "no_gap"
+
+
+@pytest.mark.parametrize(("relieved", "held_out", "verdict"), [
+    (True, 3.0, "effect"), (False, 3.0, "unknown_effect"), (True, 1.5 * FAR, "unknown_effect"),
+])  # fmt: skip
+def test_what_may_be_noise_may_be_so_beside_an_effect_that_restores_belief(
+    relieved: bool, held_out: float, verdict: str
+) -> None:
+    """The effect removes nothing of the held-out excess: without it tuning does as well, by what nobody believes."""
+    levels = Levels(
+        nominal=1e4, tuned=1.5, refitted=held_out, explained=0.0, left=held_out, repeated=False, relieved=relieved
+    )
+    won = contest((), "a", a=0.99, none=0.01)
+    assert decide((won,), ("a",), levels).verdict == verdict

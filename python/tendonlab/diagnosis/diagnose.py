@@ -134,11 +134,20 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Found:
     nominal = fitter.fit(  # any: there may be no unknowns
         fitter.case.system, initial=initial, known=True, solve=any(initial), tolerance=PLAIN
     )
-    tuned = fitter.fit(rough.system, initial=initial)
+    tuned = _tuned(fitter, rough, nominal, initial)
     fitter, tuned = renewed(fitter, tuned, shop.pool)
     search = confirmed(select_effects(fitter, tuned, shop), shop)
     log.info("selected %s", search.selected)
     return _Found(search, nominal, loop)
+
+
+def _tuned(fitter: Fitter, rough: Fitted, nominal: Fitted, initial: list[list[float]]) -> Fitted:
+    """The refitted simulator, from where the rough fit ended: under noise that knew nothing of friction that may be
+    too stiff to be simulated as exactly as the floor requires. Then from the `nominal` simulator."""
+    try:
+        return fitter.fit(rough.system, initial=initial)
+    except NumericalError:
+        return fitter.fit(nominal.system, initial=nominal.initial)
 
 
 def _require_samples(dataset: Dataset) -> None:

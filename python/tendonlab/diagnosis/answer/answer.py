@@ -11,7 +11,6 @@ import pandas as pd
 from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
 from tendonlab.diagnosis.answer.allowed import allowed
-from tendonlab.diagnosis.answer.beliefs import strain
 from tendonlab.diagnosis.answer.by_noise import more_by_noise
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats, drowned
@@ -25,10 +24,12 @@ from tendonlab.diagnosis.answer.next_experiments import advise
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun, find_outlier_run
 from tendonlab.diagnosis.answer.overlays import overlays
 from tendonlab.diagnosis.answer.verdict import Levels, Verdict, decide
+from tendonlab.diagnosis.beliefs import strain
 from tendonlab.diagnosis.discrepancy import ENOUGH, NO_PATTERNS, patterns, scattered
 from tendonlab.diagnosis.drift import Drift, held_out_factors, over_session
 from tendonlab.diagnosis.search.screen import INVISIBLE
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.trial import restores_belief
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -149,6 +150,7 @@ def _levels(
         strained=strain(case, final),
         drifted=drift.chance if drift and drift.tells else 1.0,
         drowned=len(drowned(case, floor, judged)) == len(case.measured),
+        relieved=bool(search.selected) and restores_belief(case, search.tuned, final),
     )
     if levels.repeated and levels.is_far:
         levels = replace(levels, by_noise=more_by_noise(case, final.system, floor, judged, seed=seed))

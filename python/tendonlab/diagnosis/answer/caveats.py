@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
-from tendonlab.diagnosis.answer.beliefs import pulled
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun
+from tendonlab.diagnosis.beliefs import pulled
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted

@@ -12,9 +12,8 @@ from __future__ import annotations
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.floor import renewed
-from tendonlab.diagnosis.search.contest import CLEAR
 from tendonlab.diagnosis.search.select import Search
-from tendonlab.diagnosis.search.trial import relief
+from tendonlab.diagnosis.search.trial import relief, restores_belief
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
 
@@ -40,7 +39,8 @@ def _is_refuted(search: Search) -> bool:
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     won, is_first = search.rounds[len(search.steps) - 1].accepted, len(search.selected) == 1
     assert won is not None  # every step was won
-    is_believed = relief(*pair) > max(CLEAR.evidence, MAINLY * won.left_out_gain)  # this needs no experiment
+    # What beliefs tell needs no experiment.
+    is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * won.left_out_gain
     if not case.test or (is_first and is_believed):
         return False
     try:

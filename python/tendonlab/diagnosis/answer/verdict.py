@@ -57,7 +57,8 @@ class Levels:
     `scattered`: by how much friction differs from run to run. `strained`: by how many stated standard deviations the
     fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of friction over the session, 1
     where there is none that matters. `by_noise`: by how many times more noise alone leaves of held-out experiments than
-    of repeated ones. `drowned`: whether the floor of every output exceeds its motion."""
+    of repeated ones. `drowned`: whether the floor of every output exceeds its motion. `relieved`: whether the selected
+    effects free the parameters from what nobody believes of them."""
 
     nominal: float
     tuned: float
@@ -74,6 +75,7 @@ class Levels:
     foretold: float | None = None
     by_noise: float = 1.0
     drowned: bool = False
+    relieved: bool = False
 
     @property
     def far_room(self) -> float:
@@ -124,6 +126,8 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     at_floor = holds and not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
     whole = max(_whole(levels), NO_GAP - levels.left)
+    if levels.relieved:  # what may be noise beside parameters that nobody believes may be so beside effects
+        whole = max(whole, room)
     spare = min(noise, whole, _chance_room(levels), _belief_room(levels, STRAINED_BESIDE))
     none = float(np.prod([contest.probability[None] for contest in rounds[: max(1, len(selected))]]))
     weight = {

@@ -13,6 +13,7 @@ from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import (
+    CLEAR,
     DETECT,
     Bar,
     Trial,
@@ -22,6 +23,7 @@ from tendonlab.diagnosis.search.trial import (
     is_no_shape,
     plainest_first,
     removes_little,
+    restores_belief,
 )
 from tendonlab.diagnosis.search.workshop import FAR_BEHIND, Workshop
 from tendonlab.errors import NumericalError, ParameterError
@@ -30,13 +32,13 @@ from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
+NUM_REMEMBERED = 2  # of those that gained beside the last winner, in the next contest
 NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none was ahead by less than 0.04 of that
 # Where laws have a shape: the others, where right, were behind by 1.7 nats at most, 192 times.
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
-CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain there
 LOST = 0.02  # share of its left-out gain that it may lose in single experiments: what helps in each is there
 ENOUGH = 5  # experiments of which it says something that an effect helps in each
 FIRM = 2.5  # mean square below which a floor from few repeats may be too low: 53 right effects lost 1.6 % at most there
@@ -88,10 +90,13 @@ class Round:
         return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, failed)
 
 
-def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Workshop) -> Round | None:
+def next_effect(
+    fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Workshop, before: Round | None = None
+) -> Round | None:
     """The contest for one more effect than `base` has; None where the library holds no more.
 
-    `largest_gain`: the most evidence that an effect has gained so far."""
+    `largest_gain`: the most evidence that an effect has gained so far; `before`: the contest that the last effect
+    won."""
     further = len(base.added) > 0
     label = f"effect {len(base.added) + 1}" if further else "effect"
     screened = shop.screen_all(fitter, base, label)
@@ -102,6 +107,7 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
         chosen = _with_hidden(fitter, base, chosen, bar, shop)
+        chosen += _remembered(base, screened, chosen, before) if before else []
     else:
         chosen = _behind(chosen, chosen)
     refitted = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
@@ -111,7 +117,7 @@ def next_effect(fitter: Fitter, base: Fitted, *, largest_gain: float, shop: Work
         trials = plainest_first(trials, established)
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
-        leader = _reliever(base, trials, established)
+        leader = _reliever(fitter, base, trials, established)
         trials = [leader, *(t for t in trials if t is not leader)] if leader else trials
         established = {leader.effect} if leader else set()
     failed = {s.effect: s.trouble for s in screened if not s.simulated} | dict(refitted.failed)
@@ -134,6 +140,19 @@ def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar,
     best = _promising(believed, bar)[:NUM_HIDDEN]
     hidden = [s for s in best if s.effect not in {c.effect for c in chosen}]
     return _behind([*chosen[: max(len(chosen) - len(hidden), NUM_HIDDEN)], *hidden], believed)
+
+
+def _remembered(
+    base: Fitted, screened: Sequence[Screened], chosen: Sequence[Screened], before: Round
+) -> list[Screened]:
+    """The best of those that gained `before` as well, in other elements than the winner, from where their fits ended:
+    tuning may hide them here, and the screen at believed values may see what others leave there."""
+    info, taken = base.system.info, {of.effect for of in chosen}
+    own = info.effect(base.added[-1]).element
+    able = {s.effect: s for s in screened if s.effect not in taken and info.effect(s.effect).element != own}
+    trials = [t for t in before.trials if t.effect in able and DETECT.passed(t)][:NUM_REMEMBERED]
+    values = {t.effect: {p: t.fitted.system.parameters[p] for p in info.effect(t.effect).parameters} for t in trials}
+    return [replace(able[effect], starts=(start,)) for effect, start in values.items()]
 
 
 def _behind(chosen: Sequence[Screened], believed: Sequence[Screened]) -> list[Screened]:
@@ -186,10 +205,13 @@ def _worth_adding(
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
 
 
-def _reliever(base: Fitted, trials: Sequence[Trial], established: Set[str]) -> Trial | None:
-    """The best trial without whose effect only parameters that nobody believes bring `base` not far from the floor."""
-    able = (t for t in trials if t.effect in established and t.relieved > CLEAR.evidence)
-    return next(able, None) if base.mean_square < FIRM else None
+def _reliever(fitter: Fitter, base: Fitted, trials: Sequence[Trial], established: Set[str]) -> Trial | None:
+    """The best trial without whose effect only parameters that nobody believes bring `base` not far from the floor:
+    what beliefs tell is no error of a shape, so no higher bar is asked of a further effect."""
+    if base.mean_square >= FIRM:
+        return None
+    able = (t for t in trials if t.effect in established or DETECT.passed(t))
+    return next((t for t in able if restores_belief(fitter.case, base, t.fitted)), None)
 
 
 def probabilities(

@@ -48,7 +48,8 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
     for values in starts if candidate.simulated else ():
         attempt(values)
     hidden = strained(fitter, base) and not candidate.poor_when_believed
-    if best is None or (hidden and best.mean_square > NEAR_FLOOR):
+    # Near the floor a base that is strained may hide an effect by which it is believed, and by little else.
+    if best is None or (hidden and (best.mean_square > NEAR_FLOOR or base.mean_square < NEAR_FLOOR)):
         attempt(candidate.starts[0], from_nominal=True)
     if best is None:
         raise NumericalError(str(trouble))

@@ -96,17 +96,19 @@ def select_effects(fitter: Fitter, tuned: Fitted, shop: Workshop) -> Search:
 def _add_effects(state: _Extended, tuned: Fitted, shop: Workshop) -> _Extended:
     """Add effects until none is established or there are as many as are allowed."""
     fitter, steps, places = state.fitter, state.steps, state.places
+    won: Round | None = None
     while len(steps) < MAX_EFFECTS:
         base = steps[-1] if steps else tuned
-        contest = next_effect(fitter, base, largest_gain=largest_gain(places), shop=shop)
+        contest = next_effect(fitter, base, largest_gain=largest_gain(places), shop=shop, before=won)
         if contest is None:
             return _Extended(fitter, steps, places)
         if contest.accepted is None:
             deeper = _two_deep(_Extended(fitter, steps, places), base, contest, shop)
             if deeper is None:
                 return _Extended(fitter, steps, places, (contest,))
-            fitter, steps, places = deeper.fitter, deeper.steps, deeper.places
+            fitter, steps, places, won = deeper.fitter, deeper.steps, deeper.places, None
             continue
+        won = contest
         place = Place(base, contest.accepted, contest)
         places = {**places, place.key: place}
         fitter, model = renewed(fitter, contest.accepted.fitted, shop.pool)

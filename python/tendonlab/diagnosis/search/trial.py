@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tendonlab.diagnosis.beliefs import strain
+from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter
@@ -19,6 +21,7 @@ SAME_LAW = 0.1  # the same share of a law that the model has elsewhere: errors o
 TWIN = 3.0  # nats within which two effects say the same of these data
 SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that an effect must remove
 LITTLE = 0.1  # of the rest, far above the floor: of right further effects none removed less than 0.14
+UNBELIEVED, BELIEVED = 7.0, 4.0  # stated sd by which a model pulls a parameter too far, and by which it well may
 HIDDEN = 100.0  # nats by which a weak effect must show behind a dominant one: errors of shapes gained 84
 
 
@@ -86,6 +89,15 @@ def relief(base: Fitted, extended: Fitted) -> float:
     return strain(base) - strain(extended)
 
 
+def restores_belief(case: Case, base: Fitted, extended: Fitted) -> bool:
+    """Whether the extended model frees the parameters of `base` from what nobody believes of them: by many nats, or by
+    enough of them where no one parameter is believed to be so far from what was stated, and all are with it."""
+    gained = relief(base, extended)
+    if gained > CLEAR.evidence:
+        return True
+    return gained > DETECT.evidence and strain(case, base) > UNBELIEVED and strain(case, extended) < BELIEVED
+
+
 def _bounded(gains: np.ndarray | float) -> np.ndarray:
     """Gains over a model whose derivatives exploded, which has no evidence, are large but finite; of one such model
     over another they are none."""
@@ -139,6 +151,7 @@ class Bar:
 
 
 DETECT = Bar(evidence=10.0, left_out=3.0, doubted=False)
+CLEAR = Bar(evidence=30.0, left_out=30.0, doubted=False)  # what it must gain near the floor
 
 
 def bar_for_further_effect(fitter: Fitter) -> Bar:
