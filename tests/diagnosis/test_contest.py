@@ -1,5 +1,6 @@
 """What is established: bars and the share of the error that an effect must remove, on stated numbers."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,7 +11,7 @@ import tendonlab as tl
 from tendonlab.diagnosis.search import contest
 from tendonlab.diagnosis.search.contest import _worth_adding, probabilities
 from tendonlab.diagnosis.search.refit import _goal, _needed, strained
-from tendonlab.diagnosis.search.screen import Screened, _residuals_with, _score, _starts, _unit
+from tendonlab.diagnosis.search.screen import _residuals_with, _score, _starts, _unit
 from tendonlab.diagnosis.search.screen import _Score as Score
 from tendonlab.diagnosis.search.trial import (
     DETECT,
@@ -20,7 +21,6 @@ from tendonlab.diagnosis.search.trial import (
     explains_enough,
     is_no_shape,
 )
-from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.priors import AMPLITUDE_SD
 from tendonlab.fitting.problem import Fitter
@@ -169,9 +169,28 @@ def test_that_an_effect_helps_in_each_of_few_experiments_says_little(
     num: int, worth: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
-    of: Any = SimpleNamespace(mean_square=1.2, runs=range(num))
+    of: Any = SimpleNamespace(mean_square=1.2, runs=range(num), added=())
     leader = trial("a", 50.0, lost=0.0, mean_square=1.17)
     assert _worth_adding(fitter_of(repeated=True), of, [leader], further=False) == worth
+
+
+@pytest.mark.parametrize(
+    ("effect", "gain", "worth"),
+    [
+        ("joint:stribeck", 90.0, False),
+        ("joint:stribeck", 110.0, True),
+        ("motor:viscous", 40.0, True),
+        ("joint:bias", 40.0, True),
+    ],
+)
+def test_near_the_floor_friction_beside_friction_may_be_an_error_of_its_shape(
+    effect: str, gain: float, worth: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That of viscous friction of another form looked like 64 nats of Stribeck friction."""
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
+    of: Any = SimpleNamespace(mean_square=1.2, runs=range(7), added=("joint:viscous",))
+    leader = replace(trial(effect, gain, lost=0.0, mean_square=1.17), has_shape=not effect.endswith("bias"))
+    assert _worth_adding(fitter_of(repeated=True), of, [leader], further=True, largest_gain=50.0) == worth
 
 
 @pytest.mark.parametrize(
@@ -187,9 +206,15 @@ def test_near_the_floor_evidence_alone_says_little_where_noise_is_carried_into_s
     bodies: int, replay: Replay, worth: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
-    of: Any = SimpleNamespace(mean_square=1.2, cost=1000.0, runs=range(7))
+    system = SimpleNamespace(info=tl.system_info("two_inertia"))
+    of: Any = SimpleNamespace(mean_square=1.2, cost=1000.0, runs=range(7), system=system, added=())
     fitter = fitter_of(repeated=True, bodies=bodies, replay=replay)
-    assert _worth_adding(fitter, of, [trial("a", 50.0, lost=0.0, mean_square=1.17)], further=False) == worth
+
+    def is_worth(effect: str) -> bool:
+        return _worth_adding(fitter, of, [trial(effect, 50.0, lost=0.0, mean_square=1.17)], further=False)
+
+    assert is_worth("joint:presliding") == is_worth("sensor.joint_angle:delay") == worth
+    assert is_worth("sensor.joint_angle:bias")  # noise imitates no constant
     assert contest._least_gain(fitter, of, DETECT) == (contest.CLEAR.evidence if worth else 50.0)
 
 
@@ -199,7 +224,7 @@ def test_without_repeats_little_is_enough_where_what_is_left_may_be_noise(
 ) -> None:
     monkeypatch.setattr(contest, "predicts_better", lambda *_: better)
     monkeypatch.setattr(contest, "may_be_noise", lambda *_: noise)
-    of: Any = SimpleNamespace(mean_square=6.6, runs=range(7))
+    of: Any = SimpleNamespace(mean_square=6.6, runs=range(7), added=())
     trials = [trial("a", 50.0, mean_square=4.9), trial("b", 49.0, mean_square=5.0)]
     assert _worth_adding(fitter_of(repeated=False), of, trials, further=False) == worth
 
@@ -310,72 +335,6 @@ def test_gains_over_a_model_without_evidence_are_finite() -> None:
     assert share["a"] == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(
-    ("chosen", "there", "expected"),
-    [
-        ("abcdefgh", "xaybz", "abcdefxy"),  # the best four there, of which two are new, take the last places
-        ("abcdefgh", "abcde", "abcdefgh"),
-        ("abcd", "wxyz", "abcdwxyz"),  # four stay
-        ("", "w", "w"),
-    ],
-)
-def test_candidates_that_tuning_hides_are_refitted_as_well(
-    chosen: str, there: str, expected: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def screened(names: str) -> Any:
-        return [Screened(name, 100.0 - place, ({},), 1.0) for place, name in enumerate(names)]
-
-    monkeypatch.setattr(contest, "at_believed_values", lambda fitter, base: (fitter, base))
-    shop: Any = SimpleNamespace(screen_all=lambda *_: [*screened(there), Screened("dim", 0.1, ({},), 1.0)])
-    nothing: Any = None
-    found = contest._with_hidden(nothing, nothing, screened(chosen), DETECT, shop)
-    assert "".join(s.effect for s in found) == expected
-
-
-def test_candidates_that_gained_beside_the_last_winner_are_refitted_from_there() -> None:
-    """In other elements than its own, the best two, which no screen chose."""
-    info = tl.system_info("two_inertia")
-    system = SimpleNamespace(info=info)
-    effects = {
-        "joint:coulomb": 500.0, "joint:stribeck": 400.0, "sensor.joint_angle:bias": 300.0, "load:offset": 200.0,
-        "motor:viscous": 100.0, "motor:coulomb": 50.0, "actuation:gain_error": 5.0,
-    }  # fmt: skip
-    values = {p.name: 0.1 * (k + 1) for k, p in enumerate(info.parameters)}
-    fitted = SimpleNamespace(system=SimpleNamespace(parameters=values))
-    before: Any = SimpleNamespace(trials=[Trial(name, fitted, gain, gain, 0.0) for name, gain in effects.items()])  # type: ignore[arg-type]
-    screened = [Screened(name, 1.0, ({},), 1.0) for name in effects if name != "joint:coulomb"]
-    base: Any = SimpleNamespace(added=("joint:coulomb",), system=system)
-    chosen = [s for s in screened if s.effect == "load:offset"]
-    found = contest._remembered(base, screened, chosen, before)
-    assert [s.effect for s in found] == ["sensor.joint_angle:bias", "motor:viscous"]
-    (start,) = found[1].starts
-    assert start == {p: values[p] for p in info.effect("motor:viscous").parameters}
-    few = [s for s in screened if s.effect == "actuation:gain_error"]
-    assert contest._remembered(base, few, [], before) == []  # gained too little
-
-
-@pytest.mark.parametrize(
-    ("here", "there", "behind", "poor"),
-    [
-        ((500.0, 49.0), (90.0, 8.9), [False, True], [False, True]),
-        ((500.0, 51.0), (90.0, 8.9), [False, False], [False, True]),  # a tenth of the most promised at tuned values
-        ((500.0, 49.0), (90.0, 9.1), [False, False], [False, False]),  # or at believed ones
-        ((500.0, 49.0), (90.0, None), [False, False], [False, False]),  # nobody knows what it would do there
-    ],
-)
-def test_far_behind_is_a_candidate_that_promises_little_at_tuned_and_at_believed_values(
-    here: tuple[float, ...], there: tuple[float | None, ...], behind: list[bool], poor: list[bool]
-) -> None:
-    chosen = [Screened(name, gain, ({},), 1.0) for name, gain in zip("ab", here, strict=True)]
-    believed = [
-        Screened(name, gain or 0.0, ({},), 1.0, "" if gain is not None else "stopped")
-        for name, gain in zip("ab", there, strict=True)
-    ]
-    found = contest._behind(chosen, believed)
-    assert [s.far_behind for s in found] == behind
-    assert [s.poor_when_believed for s in found] == poor
-
-
 def test_near_the_floor_an_effect_must_gain_more() -> None:
     def least(mean_square: float, cost: float) -> float:
         base: Any = SimpleNamespace(mean_square=mean_square, cost=cost, runs=range(7))
@@ -384,15 +343,3 @@ def test_near_the_floor_an_effect_must_gain_more() -> None:
     assert least(1.2, 1000.0) == contest.CLEAR.evidence > DETECT.evidence
     assert least(1.2, 400.0) == pytest.approx(20.0)  # a twentieth of the cost matters
     assert least(1.4, 1000.0) == DETECT.evidence
-
-
-@pytest.mark.parametrize("error", [NumericalError, ParameterError])
-def test_where_believed_values_cannot_be_simulated_the_first_screen_decides(
-    error: type[Exception], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fails(*_: Any) -> Any:
-        raise error("no")
-
-    monkeypatch.setattr(contest, "at_believed_values", fails)
-    nothing: Any = None
-    assert contest._with_hidden(nothing, nothing, [], DETECT, nothing) == []

@@ -156,7 +156,8 @@ def test_a_fit_that_misses_its_goal_is_a_sketch_unless_it_gains_half_of_what_a_r
     cost: float, gain: float, is_whole: bool, num_fits: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(refits, "_goal", lambda *_: 50.0)
-    monkeypatch.setattr(refits, "extended", lambda system, effect: ("with", effect))
+    started: Any = ("with b", ((3.0,),))
+    monkeypatch.setattr(refits, "followed", lambda *_: started)
     fits = [fit_of(cost=cost, gain=gain), fit_of(cost=10.0, gain=9.0)][:num_fits]
     fitter: Any = Fits(*fits)
     fitter.releveled = lambda fit: fit
@@ -164,7 +165,7 @@ def test_a_fit_that_misses_its_goal_is_a_sketch_unless_it_gains_half_of_what_a_r
     assert (worth, whole) == (fits[-1], fits[-1] if is_whole else None)
     assert len(fitter.asked) == num_fits
     assert all(asked.get("goal") is None for asked in fitter.asked[1:])
-    assert fitter.asked[0]["added"] == ("a", "b")
+    assert (fitter.asked[0]["added"], fitter.asked[0]["initial"]) == (("a", "b"), started[1])
     assert (fitter.asked[0]["goal"], fitter.asked[0]["goal_within"]) == (50.0, SKETCH)
 
 

@@ -92,6 +92,23 @@ def test_candidates_are_refitted_that_promise_a_third_of_the_bar(
     assert many.refitted == [f"c{k}" for k in range(most)]
 
 
+@pytest.mark.parametrize(("near", "worth", "accepted"), [(1.2, True, "y"), (1.4, True, "x"), (1.4, False, "y")])
+def test_near_the_floor_an_effect_that_beliefs_ask_for_comes_first(
+    near: float, worth: bool, accepted: str, worthy: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worthy(worth=worth)
+    monkeypatch.setattr(contest, "_least_gain", lambda *_: 10.0)
+    monkeypatch.setattr(contest, "restores_belief", lambda case, base, model: "y" in model.added)
+    base = model()
+    base.mean_square = near
+    shop: Any = Shop([screened("x", 50.0), screened("y", 50.0)], {"x": 40.0, "y": 20.0})
+    found = next_effect(FITTER, base, largest_gain=0.0, shop=shop)
+    assert found is not None
+    assert found.accepted is not None
+    assert (found.accepted.effect, found.trials[0].effect) == (accepted, accepted)
+    assert found.established == ({"x", "y"} if worth else {"y"})
+
+
 @pytest.mark.parametrize("strained", [False, True])
 def test_a_candidate_that_fails_at_strained_values_is_tried_at_nominal_ones(
     strained: bool, worthy: Callable[..., None]

@@ -8,7 +8,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.diagnosis.search.contest import _reliever
-from tendonlab.diagnosis.search.trial import Trial, gain_elsewhere, has_shape, is_no_shape, restores_belief
+from tendonlab.diagnosis.search.trial import Trial, gain_elsewhere, has_shape, is_constant, is_no_shape, restores_belief
 from tendonlab.simulation.catalog import LEVEL
 
 
@@ -57,6 +57,22 @@ def test_an_effect_that_gains_may_be_nothing(interval: tuple[float, float], noth
 )
 def test_what_acts_on_a_command_a_load_or_a_reading_has_no_shape(kind: str, effect: str, shape: bool) -> None:
     assert has_shape(effect, tl.system_info(kind)) is shape
+
+
+@pytest.mark.parametrize(
+    ("kind", "effect", "constant"),
+    [
+        ("two_inertia", "sensor.motor_angle:bias", True),
+        ("two_inertia", "actuation:offset", True),
+        ("cable_joint", "load:offset", True),
+        ("two_inertia", "sensor.motor_angle:delay", False),
+        ("two_inertia", "actuation:gain_error", False),
+        ("two_inertia", "actuation:deadband", False),
+        ("two_inertia", "joint:coulomb", False),
+    ],
+)
+def test_offsets_and_biases_are_constants(kind: str, effect: str, constant: bool) -> None:
+    assert is_constant(effect, tl.system_info(kind)) is constant
 
 
 def pulled_to(*sd: float, mean_square: float = 1.1) -> Any:

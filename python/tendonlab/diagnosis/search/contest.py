@@ -15,11 +15,14 @@ from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.trial import (
     CLEAR,
     DETECT,
+    HIDDEN,
     Bar,
     Trial,
     bar_for_further_effect,
     explains_enough,
     gain_elsewhere,
+    is_constant,
+    is_friction_beside,
     is_no_shape,
     plainest_first,
     removes_little,
@@ -117,9 +120,11 @@ def next_effect(
         trials = plainest_first(trials, established)
     leader = trials[0] if trials and trials[0].effect in established else None
     if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
-        leader = _reliever(fitter, base, trials, established)
+        leader, established = None, set()
+    if leader is None or base.mean_square < NEAR_FLOOR:  # there an effect that beliefs ask for is the plainer answer
+        leader = _reliever(fitter, base, trials, established) or leader
         trials = [leader, *(t for t in trials if t is not leader)] if leader else trials
-        established = {leader.effect} if leader else set()
+        established = established | {leader.effect} if leader else established
     failed = {s.effect: s.trouble for s in screened if not s.simulated} | dict(refitted.failed)
     failed = {effect: reason for effect, reason in failed.items() if effect not in {t.effect for t in trials}}
     return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader, failed=failed)
@@ -171,12 +176,13 @@ def _least_gain(fitter: Fitter, base: Fitted, bar: Bar) -> float:
     return max(bar.evidence, min(CLEAR.evidence, matters) if _evidence_counts(fitter, base) else matters)
 
 
-def _evidence_counts(fitter: Fitter, base: Fitted) -> bool:
+def _evidence_counts(fitter: Fitter, base: Fitted, effect: str | None = None) -> bool:
     """Whether evidence may tell of an effect that removes next to nothing near the floor: experiments enough, and noise
     that is known well. A replay may carry the noise of a sensor through one body to the next, where a delay or
-    presliding imitates it, by up to 291 nats on rigs that lacked nothing."""
+    presliding imitates it, by up to 291 nats on rigs that lacked nothing; no constant does."""
     bodies = len(fitter.case.prepared[0].core.position)
-    return len(base.runs) >= ENOUGH and (bodies == 1 or not fitter.case.replay.carries_noise)
+    is_known = bodies == 1 or not fitter.case.replay.carries_noise
+    return len(base.runs) >= ENOUGH and (is_known or (effect is not None and is_constant(effect, base.system.info)))
 
 
 def _worth_adding(
@@ -192,7 +198,9 @@ def _worth_adding(
     if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
         return False
     is_little = removes_little(base, trials[0])
-    is_clear = CLEAR.passed(trials[0]) and trials[0].lost < LOST and not is_little and _evidence_counts(fitter, base)
+    counts = _evidence_counts(fitter, base, trials[0].effect)
+    tells = CLEAR.passed(trials[0]) and (trials[0].evidence_gain > HIDDEN or not is_friction_beside(base, trials[0]))
+    is_clear = tells and trials[0].lost < LOST and not is_little and counts
     if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
         return False
     if repeated and further:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from tendonlab.diagnosis.search.following import followed
 from tendonlab.diagnosis.search.screen import Screened
 from tendonlab.diagnosis.search.swap import extended
 from tendonlab.errors import NumericalError, ParameterError
@@ -102,9 +103,11 @@ def _fit(
     added = (*base.added, *effect)
     needed = _needed(base, best, pace)
     goal = _goal(fitter, base, needed)
-    system, initial = extended(base.system, effect), base.initial
     if from_nominal:
-        system, initial = _annealed(fitter, base, system, added)
+        system, initial = _annealed(fitter, base, extended(base.system, effect), added)
+    else:
+        ((name, values),) = effect.items()
+        system, initial = followed(fitter, base, name, values)
     fit = fitter.fit(system, added=added, initial=initial, max_iterations=MAX_ITERATIONS, goal=goal, goal_within=SKETCH)
     worth = fitter.releveled(fit)
     if fit.cost <= goal:

@@ -213,16 +213,31 @@ def _unit(case: Case, p: ParameterInfo) -> float:
 def _residuals_with(
     fitter: Fitter, base: Fitted, effect: str, tried: Sequence[dict[str, float]]
 ) -> list[np.ndarray | str]:
-    """Whitened residuals of the training experiments at `base` with `effect` at each of these values, as they count; or
-    why it cannot be simulated there."""
-    systems = [extended(base.system, {effect: values}) for values in tried]
+    """Those of `base` with `effect` at each of these values."""
+    return residuals_at(fitter, base, [extended(base.system, {effect: values}) for values in tried])
+
+
+def residuals_at(fitter: Fitter, base: Fitted, systems: Sequence[System]) -> list[np.ndarray | str]:
+    """Whitened residuals of the training experiments at each of these systems, with the own unknowns of `base`, as they
+    count; or why one cannot be simulated."""
+    return [seen if isinstance(seen, str) else marginal(base, seen) for seen in whitened_at(fitter, base, systems)]
+
+
+def marginal(base: Fitted, seen: Sequence[np.ndarray]) -> np.ndarray:
+    """The whitened residuals of each training experiment together, as they count in `base`."""
+    return np.concatenate([of.residual(rows) for of, rows in zip(base.marginals, seen, strict=True)])
+
+
+def whitened_at(fitter: Fitter, base: Fitted, systems: Sequence[System]) -> list[list[np.ndarray] | str]:
+    """Whitened residuals of each training experiment at each of these systems, with the own unknowns of `base`; or why
+    one cannot be simulated."""
     parts: list[list[np.ndarray]] = [[] for _ in systems]
     trouble = ["" for _ in systems]
-    for i, own, marginal in zip(fitter.case.train, base.initial, base.marginals, strict=True):
+    for i, own in zip(fitter.case.train, base.initial, strict=True):
         able = [k for k, why in enumerate(trouble) if not why]
         outputs, said = fitter.case.run_together(i, [systems[k] for k in able], own)
         for k, seen, why in zip(able, outputs, said, strict=True):
             trouble[k] = why
             if not why:
-                parts[k].append(marginal.residual(fitter.whitening[i].residual(seen)))
-    return [why or np.concatenate(rows) for why, rows in zip(trouble, parts, strict=True)]
+                parts[k].append(fitter.whitening[i].residual(seen))
+    return [why or rows for why, rows in zip(trouble, parts, strict=True)]

@@ -22,7 +22,7 @@ TWIN = 3.0  # nats within which two effects say the same of these data
 SHARE, ALONE_SHARE = 0.5, 0.35  # of the rest that an effect must remove
 LITTLE = 0.1  # of the rest, far above the floor: of right further effects none removed less than 0.14
 UNBELIEVED, BELIEVED = 7.0, 4.0  # stated sd by which a model pulls a parameter too far, and by which it well may
-HIDDEN = 100.0  # nats by which a weak effect must show behind a dominant one: errors of shapes gained 84
+HIDDEN = 100.0  # nats by which a weak effect must show behind another one: errors of shapes gained 84
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,12 @@ def has_shape(effect: str, info: SystemInfo) -> bool:
     have none; a gate or presliding that acts on what a sheath passes on has one."""
     law = info.effect(effect)
     return not law.roles & SIGNAL or law.element in {port.element for port in info.ports}
+
+
+def is_constant(effect: str, info: SystemInfo) -> bool:
+    """Whether an effect adds a constant of either sign to a command, a load or a reading."""
+    rows = [info.parameter(name) for name in info.effect(effect).parameters]
+    return not has_shape(effect, info) and all(p.lower == -np.inf and p.dimension != "ratio" for p in rows)
 
 
 def is_nothing(effect: str, fitted: Fitted) -> bool:
@@ -203,6 +209,13 @@ def _is_friction_elsewhere(base: Fitted, trial: Trial) -> bool:
     law = trial.effect.split(":")[-1]
     there = any(name.split(":")[-1] == law for name in base.added)
     return there and trial.has_shape
+
+
+def is_friction_beside(base: Fitted, trial: Trial) -> bool:
+    """Whether the law of the trial's effect joins another that was added to the same element: the shape of the one may
+    err, and look like the other."""
+    element = trial.effect.split(":")[0]
+    return trial.has_shape and any(name.split(":")[0] == element for name in base.added)
 
 
 def removes_little(base: Fitted, trial: Trial) -> bool:
