@@ -78,3 +78,11 @@ def test_steps_that_cannot_be_simulated_or_leave_more_are_not_taken(
     system, initial = followed(fitter, own, EFFECT, {"actuation_gain_error": 0.1})
     assert system.parameters == {**base.system.parameters, "actuation_gain_error": 0.1}
     assert initial == base.initial
+
+
+def test_derivatives_that_exploded_move_nothing(right: tuple[Fitter, Fitted]) -> None:
+    fitter, base = right
+    wild = replace(base, runs=tuple(replace(run, jacobian=np.full_like(run.jacobian, np.inf)) for run in base.runs))
+    system, initial = followed(fitter, wild, EFFECT, {"actuation_gain_error": 0.1})
+    assert initial == base.initial
+    assert system.parameters == {**base.system.parameters, "actuation_gain_error": 0.1}

@@ -21,6 +21,7 @@ SHARES = (1.0, 0.5)  # of the step that follows from the slopes: what bends may 
 Owns = tuple[tuple[float, ...], ...]  # the own unknowns of each training experiment
 
 
+@np.errstate(over="ignore", invalid="ignore")  # derivatives may explode
 def followed(fitter: Fitter, base: Fitted, effect: str, values: Mapping[str, float]) -> tuple[System, Owns]:
     """The model with `effect` at these `values`, and the own unknowns of each training experiment: with the free
     parameters of `base` where they are or where they follow to, whichever leaves least, and these unknowns alike."""
@@ -32,6 +33,8 @@ def followed(fitter: Fitter, base: Fitted, effect: str, values: Mapping[str, flo
         return plain, base.initial
     residual, jacobian = base.rows
     step = -solved(base.precision, (marginal(base, seen) - residual) @ jacobian)
+    if not np.isfinite(step).all():  # derivatives that exploded tell nothing
+        return plain, base.initial
     coordinates = [base.x, *(base.x + share * step for share in SHARES)]
     systems = [plain, *(_at(base, plain, x) for x in coordinates[1:])]
     rows = [seen, *whitened_at(fitter, base, systems[1:])]
@@ -62,6 +65,8 @@ def _owns(fitter: Fitter, base: Fitted, system: System, left: list[np.ndarray]) 
             continue
         information = run.by_own.T @ run.by_own + np.eye(len(run.own))
         step = -solved(information, run.by_own.T @ before + run.own)
+        if not np.isfinite(step).all():
+            continue
         moved = tuple((np.array(owns[t]) + case.own_sd(i) * step).tolist())
         outputs, (trouble,) = case.run_together(i, [system], moved)
         if trouble:
