@@ -28,14 +28,19 @@ def said(
     stated: NominalParameter | None = None,
     drift: Drift | None = None,
     outlier: OutlierRun | None = None,
+    without: float | None = None,
 ) -> tuple[str, ...]:
-    """Caveats on an inertia fitted `x` stated sd away, and these held-out errors of one output of this swing."""
+    """Caveats on an inertia fitted `x` stated sd away (`without` the effects: so many), and these held-out errors of one
+    output of this swing."""
     sd = ((stated and stated.sd) or 0.002) / 0.02
     free: Any = SimpleNamespace(
         name="inertia", log=True, scale=0.02, mean=0.0, sd=sd, value=lambda x: 0.02 * float(np.exp(x))
     )
-    at = np.log1p(0.1 * x) if x > -10.0 else -140.0
-    final: Any = SimpleNamespace(free=[free], x=[at], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2"))
+
+    def model(x: float) -> Any:
+        at = np.log1p(0.1 * x) if x > -10.0 else -140.0
+        return SimpleNamespace(free=[free], x=[at], added=added, system=SimpleNamespace(unit=lambda name: "kg*m^2"))
+
     time = np.linspace(0.0, 20.0 * np.pi, 4001)
     parameters = {"inertia": stated or NominalParameter(0.02, 0.002)}
     case: Any = SimpleNamespace(
@@ -46,7 +51,8 @@ def said(
         prepared=[SimpleNamespace(measured=swing * np.sqrt(2.0) * np.sin(time)[None])],
     )
     stages = {s: _of(e) for s, e in zip(("nominal", "refitted", "with_effect"), errors, strict=True)}
-    return caveats(final, Judged(case, FLOOR, stages, (), (0,), {}), drift, outlier)
+    relieved = None if without is None else model(without)
+    return caveats(model(x), Judged(case, FLOOR, stages, (), (0,), {}), drift, outlier, relieved=relieved)
 
 
 def test_a_logarithm_without_end_is_a_value_of_0() -> None:
@@ -111,3 +117,12 @@ def test_a_run_that_alone_differs_is_named() -> None:
     assert text.startswith(
         "Of the training runs, run-4 alone leaves an error of 1.9 noise floors; the others leave 1. The verdict"
     )
+
+
+def test_effects_that_bring_a_parameter_back_say_so() -> None:
+    (line,) = said(x=1.23, without=9.0)
+    assert line == (
+        "Without a:b, inertia was fitted 9 standard deviations from its stated value; with a:b, no parameter further "
+        "than 1.2 from its own. What was stated speaks for a:b where the held-out error does not."
+    )
+    assert said(x=1.23, without=3.0) == ()  # only unstated parameters were strained

@@ -67,6 +67,12 @@ def _won(effect: str, step: Fitted) -> Round:
     return Round(step.added[:-1], (), (trial,), shares, trial, {effect})
 
 
+def accepted_last(search: Search) -> Trial:
+    won = search.rounds[len(search.steps) - 1].accepted
+    assert won is not None
+    return won
+
+
 @pytest.fixture
 def shop(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """A workshop, where models of none, one and two effects replay with these errors."""
@@ -74,6 +80,7 @@ def shop(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     def made(*errors: float, gain: float = 1.0) -> Any:
         monkeypatch.setattr(heldout, "predictive_gain", lambda *_: {"mean": gain, "se": 1.0})
         monkeypatch.setattr(confirm, "renewed", lambda fitter, model, pool: (fitter, model))
+        monkeypatch.setattr(confirm, "_gained", lambda search: accepted_last(search).left_out_gain)
         monkeypatch.setattr(heldout, "models", lambda case, model, judged: [len(model.added)])
         monkeypatch.setattr(heldout, "replay", lambda case, models, judged: replayed(*[errors[models[0]]] * 3))
         return SimpleNamespace(pool=None)
@@ -199,3 +206,16 @@ def test_the_report_says_what_was_refuted(found: Callable[..., Search], shop: Ca
     assert said.startswith("Not established: joint:stribeck. The training experiments speak for it, but on held-out")
     assert "less than 25 % of the excess error" in said
     assert notes._on_the_refuted(found(FIRST)) == []
+
+
+def test_what_an_effect_gains_counts_beside_those_before_alone(
+    found: Callable[..., Search], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not beside one that was refuted since, with which its place was contested."""
+    asked = SimpleNamespace(of=lambda *pair: SimpleNamespace(left_out_gain=pair))
+    monkeypatch.setattr(confirm, "Trial", asked)
+    search = found(FIRST, SECOND)
+    effect, after, before = confirm._gained(search)  # type: ignore[misc]
+    assert (effect, after.added, before.added) == (SECOND, (FIRST, SECOND), (FIRST,))
+    effect, after, before = confirm._gained(search.without_last(search.fitter, search.path[-2]))  # type: ignore[misc]
+    assert (effect, after.added, before.added) == (FIRST, (FIRST,), ())

@@ -103,21 +103,20 @@ def test_an_effect_restores_belief_in_parameters_that_were_pulled_too_far(
 
 
 @pytest.mark.parametrize(
-    ("mean_square", "gain", "established", "found"),
+    ("mean_square", "gain", "found"),
     [
-        (1.1, 50.0, {"a", "b"}, "b"),
-        (1.1, 25.0, {"a"}, "b"),  # what beliefs tell needs no higher bar of a further effect
-        (1.1, 9.0, {"a"}, None),
-        (9.0, 50.0, {"a", "b"}, None),
+        (1.1, 25.0, "b"),  # what beliefs tell needs no higher bar of a further effect
+        (1.1, 9.0, None),
+        (9.0, 50.0, None),
     ],
 )
 def test_what_relieves_the_beliefs_takes_over_near_the_floor(
-    mean_square: float, gain: float, established: set[str], found: str | None
+    mean_square: float, gain: float, found: str | None
 ) -> None:
     base = pulled_to(7.5, mean_square=mean_square)
     trials = [Trial("a", pulled_to(7.4), 200.0, 200.0, 0.0), Trial("b", pulled_to(0.5), gain, gain, 0.0)]
     fitter: Any = SimpleNamespace(case=stated(1))
-    best = _reliever(fitter, base, trials, established)
+    best = _reliever(fitter, base, trials)
     assert (best.effect if best else None) == found
 
 

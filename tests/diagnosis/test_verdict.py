@@ -385,3 +385,16 @@ def test_what_may_be_noise_may_be_so_beside_an_effect_that_restores_belief(
     )
     won = contest((), "a", a=0.99, none=0.01)
     assert decide((won,), ("a",), levels).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("relieved", "explained", "by_beliefs"),
+    [(True, 0.3, True), (True, None, True), (True, 0.9, False), (False, 0.3, False)],
+)
+def test_effects_are_told_by_beliefs_where_held_out_experiments_hardly_speak_for_them(
+    relieved: bool, explained: float | None, by_beliefs: bool
+) -> None:
+    levels = Levels(
+        nominal=9.0, tuned=2.0, refitted=2.0, explained=explained, left=1.5, repeated=False, relieved=relieved
+    )
+    assert levels.is_by_beliefs is by_beliefs

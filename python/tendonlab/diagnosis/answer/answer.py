@@ -81,7 +81,7 @@ def answer(
         shrinkage=shown.shrinkage(seed),
         next_experiments=proposed,
         references=references,
-        caveats=caveats(search.final, shown, drift, outlier),
+        caveats=caveats(search.final, shown, drift, outlier, relieved=search.tuned if levels.is_by_beliefs else None),
         warnings=(
             *notes.warnings(shown.case, floor, search),
             *trouble,

@@ -10,7 +10,7 @@ from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.outlier_run import OutlierRun
-from tendonlab.diagnosis.beliefs import pulled
+from tendonlab.diagnosis.beliefs import pulled, strain
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -23,17 +23,37 @@ PULLED = 4.0  # stated standard deviations from the stated value
 
 
 def caveats(
-    final: Fitted, shown: Judged, drift: Drift | None = None, outlier: OutlierRun | None = None
+    final: Fitted,
+    shown: Judged,
+    drift: Drift | None = None,
+    outlier: OutlierRun | None = None,
+    *,
+    relieved: Fitted | None = None,
 ) -> tuple[str, ...]:
-    """A parameter far from its stated value, a change that made held-out errors worse, a floor above its signal,
-    friction that changed over the session, a run that differs from all others."""
+    """A parameter that only the effects bring near its stated value, one that is far from there, a change that made
+    held-out errors worse, a floor above its signal, friction that changed over the session, a run that differs from all
+    others. `relieved`: the model without the effects, where these bring its parameters back to what was stated, and the
+    held-out error hardly speaks for them."""
     return (
+        *_relieved(shown.case, relieved, final),
         *_pulled(shown.case, final),
         *_worse(shown.stages, shown.floor, final.added),
         *_drowned(shown.case, shown.floor, shown.experiments),
         *_drifted(shown.case, drift),
         *_differs(outlier),
     )
+
+
+def _relieved(case: Case, tuned: Fitted | None, final: Fitted) -> list[str]:
+    far = max(pulled(case, tuned), key=lambda of: of.away, default=None) if tuned else None
+    if far is None or far.away < PULLED:
+        return []
+    added = " and ".join(final.added)
+    return [
+        f"Without {added}, {words(far.name)} was fitted {far.away:.0f} standard deviations from its stated value; with "
+        f"{added}, no parameter further than {strain(case, final):.1f} from its own. What was stated speaks for "
+        f"{added} where the held-out error does not."
+    ]
 
 
 def _pulled(case: Case, final: Fitted) -> list[str]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.floor import renewed
 from tendonlab.diagnosis.search.select import Search
-from tendonlab.diagnosis.search.trial import relief, restores_belief
+from tendonlab.diagnosis.search.trial import Trial, relief, restores_belief
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
 
@@ -37,10 +37,9 @@ def _is_refuted(search: Search) -> bool:
     experiments foretell much; without repeats where it removes little of what the model without it leaves, and may do
     even that by chance, or where, near the floor, an effect beside others leaves much of what they leave."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
-    won, is_first = search.rounds[len(search.steps) - 1].accepted, len(search.selected) == 1
-    assert won is not None  # every step was won
+    gained, is_first = _gained(search), len(search.selected) == 1
     # What beliefs tell needs no experiment.
-    is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * won.left_out_gain
+    is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * gained
     if not case.test or (is_first and is_believed):
         return False
     try:
@@ -56,6 +55,13 @@ def _is_refuted(search: Search) -> bool:
         return False
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
     if fitter.floor.repeated:
-        foretold = CARRIED * won.left_out_gain * len(case.test) / len(case.train)
+        foretold = CARRIED * gained * len(case.test) / len(case.train)
         return gain["mean"] < max(0.0, min(SURE * gain["se"], foretold))
     return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
+
+
+def _gained(search: Search) -> float:
+    """Nats that left-out parts of the training experiments gain by the last effect beside those before it: its place may
+    have been contested beside one that was refuted since."""
+    before, after = search.path[-2:]
+    return Trial.of(search.selected[-1], after, before).left_out_gain

@@ -89,6 +89,11 @@ class Levels:
         """Whether held-out experiments hold what is no noise."""
         return self.far_room < 0.0
 
+    @property
+    def is_by_beliefs(self) -> bool:
+        """Whether beliefs speak for the selected effects, and held-out experiments hardly."""
+        return self.relieved and (self.explained or 0.0) < EXPLAINED
+
     def most_followed(self, *, selected: bool) -> float:
         """Share of what the final model leaves that may follow the motion; beyond that something is missing. Where
         effects were `selected`, another form of them leaves such errors as well."""

@@ -122,7 +122,7 @@ def next_effect(
     if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
         leader, established = None, set()
     if leader is None or base.mean_square < NEAR_FLOOR:  # there an effect that beliefs ask for is the plainer answer
-        leader = _reliever(fitter, base, trials, established) or leader
+        leader = _reliever(fitter, base, trials) or leader
         trials = [leader, *(t for t in trials if t is not leader)] if leader else trials
         established = established | {leader.effect} if leader else established
     failed = {s.effect: s.trouble for s in screened if not s.simulated} | dict(refitted.failed)
@@ -213,12 +213,12 @@ def _worth_adding(
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
 
 
-def _reliever(fitter: Fitter, base: Fitted, trials: Sequence[Trial], established: Set[str]) -> Trial | None:
+def _reliever(fitter: Fitter, base: Fitted, trials: Sequence[Trial]) -> Trial | None:
     """The best trial without whose effect only parameters that nobody believes bring `base` not far from the floor:
     what beliefs tell is no error of a shape, so no higher bar is asked of a further effect."""
     if base.mean_square >= FIRM:
         return None
-    able = (t for t in trials if t.effect in established or DETECT.passed(t))
+    able = (t for t in trials if DETECT.passed(t))
     return next((t for t in able if restores_belief(fitter.case, base, t.fitted)), None)
 
 

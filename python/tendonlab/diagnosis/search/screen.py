@@ -213,13 +213,9 @@ def _unit(case: Case, p: ParameterInfo) -> float:
 def _residuals_with(
     fitter: Fitter, base: Fitted, effect: str, tried: Sequence[dict[str, float]]
 ) -> list[np.ndarray | str]:
-    """Those of `base` with `effect` at each of these values."""
-    return residuals_at(fitter, base, [extended(base.system, {effect: values}) for values in tried])
-
-
-def residuals_at(fitter: Fitter, base: Fitted, systems: Sequence[System]) -> list[np.ndarray | str]:
-    """Whitened residuals of the training experiments at each of these systems, with the own unknowns of `base`, as they
-    count; or why one cannot be simulated."""
+    """Whitened residuals of the training experiments at `base` with `effect` at each of these values, as they count; or
+    why it cannot be simulated there."""
+    systems = [extended(base.system, {effect: values}) for values in tried]
     return [seen if isinstance(seen, str) else marginal(base, seen) for seen in whitened_at(fitter, base, systems)]
 
 
