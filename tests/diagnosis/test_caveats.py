@@ -30,8 +30,8 @@ def said(
     outlier: OutlierRun | None = None,
     without: float | None = None,
 ) -> tuple[str, ...]:
-    """Caveats on an inertia fitted `x` stated sd away (`without` the effects: so many), and these held-out errors of one
-    output of this swing."""
+    """Caveats on an inertia fitted `x` stated sd away (`without` the effects: so many), and these held-out errors of
+    one output of this swing."""
     sd = ((stated and stated.sd) or 0.002) / 0.02
     free: Any = SimpleNamespace(
         name="inertia", log=True, scale=0.02, mean=0.0, sd=sd, value=lambda x: 0.02 * float(np.exp(x))

@@ -61,7 +61,7 @@ def _is_refuted(search: Search) -> bool:
 
 
 def _gained(search: Search) -> float:
-    """Nats that left-out parts of the training experiments gain by the last effect beside those before it: its place may
-    have been contested beside one that was refuted since."""
+    """Nats that left-out parts of the training experiments gain by the last effect beside those before it: its place
+    may have been contested beside one that was refuted since."""
     before, after = search.path[-2:]
     return Trial.of(search.selected[-1], after, before).left_out_gain
