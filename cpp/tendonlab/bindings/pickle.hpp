@@ -53,13 +53,13 @@ inline auto pickled_experiment() {
   using integrate::Experiment;
   return py::pickle(
       [](const Experiment& e) {
-        return py::make_tuple(e.time, e.inputs, e.loop, e.position, e.velocity, to_rows(e.taken), e.reading);
+        return py::make_tuple(e.time, e.inputs, e.loop, e.position, e.velocity, to_rows(e.taken), e.reading, e.sense);
       },
       [](const py::tuple& state) {
         return Experiment{state[0].cast<std::vector<double>>(), state[1].cast<std::vector<integrate::Signal>>(),
                           state[2].cast<integrate::Loop>(),     state[3].cast<std::vector<double>>(),
                           state[4].cast<std::vector<double>>(), to_readings(state[5].cast<ReadingRows>()),
-                          state[6].cast<std::vector<double>>()};
+                          state[6].cast<std::vector<double>>(), state[7].cast<double>()};
       });
 }
 }  // namespace tendonlab::bindings

@@ -68,6 +68,12 @@ Experiment make_experiment(const std::string& kind, std::vector<double> time, st
           to_readings(taken), std::move(reading)};
 }
 
+Experiment last_moved(Experiment of, double sense) {
+  if (sense != 1 && sense != -1) throw ParameterError(sentence("sense = ", sense, ": expected 1 or -1"));
+  of.sense = sense;
+  return of;
+}
+
 Experiment started(Experiment of, std::vector<double> position, std::vector<double> velocity,
                    std::vector<double> reading) {
   if (position.size() != of.position.size() || velocity.size() != of.velocity.size() ||
@@ -180,6 +186,8 @@ void bind_experiments(py::module_& module) {
            "output before the first sample, NaN where it is not known (default).")
       .def("started", &started, py::arg("position"), py::arg("velocity"), py::arg("reading"),
            "The same experiment from another initial state.")
+      .def("last_moved", &last_moved, py::arg("sense"),
+           "The same experiment where what rests at the start has moved last in this sense, 1 or -1.")
       .def(
           "until",
           [](const Experiment& of, std::size_t samples) {
@@ -193,7 +201,8 @@ void bind_experiments(py::module_& module) {
       .def_readonly("time", &Experiment::time)
       .def_readonly("position", &Experiment::position)
       .def_readonly("velocity", &Experiment::velocity)
-      .def_readonly("reading", &Experiment::reading);
+      .def_readonly("reading", &Experiment::reading)
+      .def_readonly("sense", &Experiment::sense);
   py::class_<integrate::Settings>(module, "Settings", "Tolerance and scales of the integration.")
       .def(py::init([](double tolerance, double position_scale, double velocity_scale, long max_attempts,
                        const std::vector<std::string>& ports, const std::optional<std::vector<unsigned>>& outputs) {

@@ -41,6 +41,7 @@ struct Experiment {
   std::vector<double> position, velocity;  ///< initial state, one number per degree of freedom
   std::vector<TakenReading> taken;         ///< positions that are not yet freed of the bias of their sensors
   std::vector<double> reading;             ///< of the sensor of each output before the first sample; NaN: not known
+  double sense = 1;                        ///< in which what rests at the start has moved last
 };
 
 /// A number by which outputs are differentiated: a parameter or part of the initial state. Seed k gives column k of the

@@ -74,7 +74,7 @@ class Simulation {
       if (m < System::directions) {
         const double v = plain_contact.sliding_velocity(m, at, plain_frame, drive);
         resting[i] = v == 0.0;
-        plain_frame.mode[i] = v < 0 ? -1.0 : 1.0;
+        plain_frame.mode[i] = std::copysign(1.0, resting[i] ? drive.from.sense : v);
       } else {
         const double g = plain_contact.stretch(m, at, plain_frame, drive), gap = plain_contact.half_gap(m);
         plain_frame.mode[i] = g > gap ? 1.0 : g < -gap ? -1.0 : 0.0;

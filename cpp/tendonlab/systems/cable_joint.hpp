@@ -108,7 +108,7 @@ struct CableJoint : SystemDefaults {
   void prepare() {
     per_turn = inverse_turn * screw_pitch;
     travel = per_turn / gear_ratio;
-    rest_stretch = holding_stretch(T(0.0));
+    rest_stretch = holding_stretch(T(0.0), T(0.0));
     inverse_inertia = {1.0 / inertia(T(1.0)), 1.0 / motor_inertia};
   }
   std::array<T, dof> rigid_shape() const { return {T(1.0), anchor_distance / travel}; }
@@ -116,10 +116,12 @@ struct CableJoint : SystemDefaults {
     const auto& drive = std::get<actuation::Winding<T>>(std::get<winding>(slot).laws);
     return drive.torque_constant * anchor_distance / (travel * drive.resistance);
   }
-  /// The nuts start where they hold the joint at rest; a motor that drives them starts with the joint's velocity.
+  /// The nuts start where they hold the joint and its load at rest; a motor that drives them starts with the joint's
+  /// velocity.
   template <class Inputs>
   void begin(Motion<T, 2>& at, const Inputs& in) const {
-    const T theta = at.position[0], goal = anchor_distance * sin(theta) + holding_stretch(theta) - rest_stretch;
+    const T theta = at.position[0], held = holding_stretch(theta, load.apply(T{}));
+    const T goal = anchor_distance * sin(theta) + held - rest_stretch;
     at.position[1] = goal / travel;
     Nut<T> nut = carried(at.position[1], T(1.0));
     for (int i = 0; i < 8; ++i) {  // Newton: the ripple is a small part of the travel
@@ -254,15 +256,16 @@ struct CableJoint : SystemDefaults {
     const T near = link_1_mass * link_1_center + link_2_mass * link_1_length, far = 2.0 * link_2_mass * link_2_center;
     return -(gravity * (near * first + far * second));
   }
-  /// Elongation of cable 1 that holds the joint at rest, but for the path that both cables gain, by Newton: with both
-  /// cables taut and linear in one step.
-  T holding_stretch(const T& theta) const {
+  /// Elongation of cable 1, but for the path that both cables gain, that holds the joint and the torque `known` on it
+  /// at rest, by Newton: with both cables taut and linear in one step.
+  T holding_stretch(const T& theta, const T& known) const {
     using D = Dual<T, 1>;
     const auto& cable = std::get<cable_1>(slot);
     const T& stiffness = std::get<transmission::TautCompliance<T>>(cable.laws).stiffness;
     const auto stretches = plain(stiffness) > 0.0;
     if (!any(stretches)) return T(0.0);
-    const T arm = anchor_distance * cos(theta), wanted = -(weight(theta) / arm), path = path_slope(theta) / arm;
+    const T arm = anchor_distance * cos(theta), wanted = -((weight(theta) + known) / arm),
+            path = path_slope(theta) / arm;
     T stretch = wanted / (2.0 * stiffness);
     for (int i = 0; i < 20; ++i) {
       Sliding<D> pulled, released;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -14,6 +14,7 @@ from tendonlab.errors import DatasetError, ParameterError
 from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.command import fed_noise
 from tendonlab.simulation.records import Experiment
+from tendonlab.simulation.sense import EXACT, last_sense
 from tendonlab.simulation.signals import averaged, hold, linear, scales_of, sloped, smooth, smoothed
 from tendonlab.simulation.start import Start, start_of
 
@@ -126,10 +127,17 @@ def prepare(experiment: Experiment, system: Simulator, replay: Replay) -> Prepar
         reading=start.reading,
     )
     scale = scales_of(time, measured[[s.axis is not None for s in outputs]])
-    return Prepared(
+    ready = Prepared(
         name=experiment.name, core=core, measured=measured, start=start, initial=free, initial_sd=sd,
         position_scale=scale[0], velocity_scale=scale[1],
     )  # fmt: skip
+
+    def simulate(sense: float, num: int) -> np.ndarray:
+        begun = core.last_moved(sense).until(num)
+        run = _core.simulate(system.kind, system.values(), system.active(), begun, [], ready.settings(EXACT))
+        return np.asarray(run["outputs"])
+
+    return replace(ready, core=core.last_moved(last_sense(experiment, system.info, measured, simulate)))
 
 
 def as_experiment(given: Experiment | pd.DataFrame) -> Experiment:
