@@ -174,23 +174,82 @@ def test_that_an_effect_helps_in_each_of_few_experiments_says_little(
     assert _worth_adding(fitter_of(repeated=True), of, [leader], further=False) == worth
 
 
+def beside(effect: str, gain: float, left: float) -> Any:
+    """A trial beside friction of the joint."""
+    system = SimpleNamespace(info=tl.system_info("two_inertia"))
+    return replace(trial(effect, gain, mean_square=left, system=system), has_shape=not effect.endswith("bias"))
+
+
 @pytest.mark.parametrize(
-    ("effect", "gain", "worth"),
+    ("effect", "gain", "left", "worth"),
     [
-        ("joint:stribeck", 90.0, False),
-        ("joint:stribeck", 110.0, True),
-        ("motor:viscous", 40.0, True),
-        ("joint:bias", 40.0, True),
+        ("joint:presliding", 90.0, 1.17, False),
+        ("joint:presliding", 110.0, 1.17, True),
+        ("joint:stribeck", 500.0, 1.13, False),  # whatever it gains: 5.8 % of what is left
+        ("joint:stribeck", 50.0, 1.125, True),
+        ("motor:stribeck", 40.0, 1.17, True),
+        ("sensor.joint_angle:bias", 40.0, 1.17, True),
     ],
 )
 def test_near_the_floor_friction_beside_friction_may_be_an_error_of_its_shape(
-    effect: str, gain: float, worth: bool, monkeypatch: pytest.MonkeyPatch
+    effect: str, gain: float, left: float, worth: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """That of viscous friction of another form looked like 64 nats of Stribeck friction."""
+    """Viscous friction of another form looked like 475 nats of Stribeck friction."""
     monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
     of: Any = SimpleNamespace(mean_square=1.2, runs=range(7), added=("joint:viscous",))
-    leader = replace(trial(effect, gain, lost=0.0, mean_square=1.17), has_shape=not effect.endswith("bias"))
-    assert _worth_adding(fitter_of(repeated=True), of, [leader], further=True, largest_gain=50.0) == worth
+    fitter = fitter_of(repeated=True)
+    assert _worth_adding(fitter, of, [beside(effect, gain, left)], further=True, largest_gain=50.0) == worth
+
+
+@pytest.mark.parametrize(
+    ("effect", "left", "worth"),
+    [
+        ("joint:stribeck", 2.1, False),
+        ("joint:stribeck", 1.9, True),
+        ("joint:asymmetry", 2.1, True),  # no level of its own
+        ("motor:stribeck", 2.1, True),
+    ],
+)
+def test_without_repeats_a_second_level_of_friction_must_remove_half_of_the_rest(
+    effect: str, left: float, worth: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Dry friction of another form than the library's looks like two levels."""
+    monkeypatch.setattr(contest, "predicts_better", lambda *_: True)
+    monkeypatch.setattr(contest, "may_be_noise", lambda *_: True)
+    of: Any = SimpleNamespace(mean_square=3.0, runs=range(7), added=("joint:coulomb",))
+    fitter = fitter_of(repeated=False)
+    assert _worth_adding(fitter, of, [beside(effect, 200.0, left)], further=True) == worth
+
+
+@pytest.mark.parametrize(
+    ("repeated", "further", "near", "first"),
+    [(True, False, 2.0, "c"), (False, False, 2.0, "a"), (True, True, 2.0, "a"), (True, False, 3.0, "a")],
+)
+def test_of_two_missing_effects_the_one_that_helps_in_each_experiment_comes_first(
+    repeated: bool, further: bool, near: float, first: str
+) -> None:
+    """Not far above a floor from repeats: there an effect that costs single experiments is not established."""
+    of: Any = SimpleNamespace(mean_square=near)
+    trials = [
+        trial("a", 1000.0, left_out=1000.0, lost=0.07, mean_square=1.2),
+        trial("b", 900.0, left_out=900.0, lost=0.03, mean_square=1.2),
+        trial("c", 300.0, left_out=300.0, lost=0.0, mean_square=1.5),
+        trial("d", 250.0, left_out=250.0, lost=0.0, mean_square=1.5),
+    ]
+    found = contest._steadier_first(fitter_of(repeated=repeated), of, trials, further=further)
+    assert found[0].effect == first
+    assert sorted(t.effect for t in found) == ["a", "b", "c", "d"]
+
+
+@pytest.mark.parametrize(("gain", "left"), [(190.0, 1.5), (300.0, 1.95)])
+def test_an_effect_that_helps_in_each_experiment_must_tell_as_well(gain: float, left: float) -> None:
+    """A fifth of what the first one gains, and a tenth of what is left."""
+    trials = [
+        trial("a", 1000.0, left_out=1000.0, lost=0.07, mean_square=1.2),
+        trial("c", gain, left_out=gain, lost=0.0, mean_square=left),
+    ]
+    of: Any = SimpleNamespace(mean_square=2.0)
+    assert contest._steadier_first(fitter_of(repeated=True), of, trials, further=False) == trials
 
 
 @pytest.mark.parametrize(

@@ -37,13 +37,15 @@ def test_a_delay_that_vanishes_is_not_printed_as_0_ms(fitter: Fitter, steps: flo
     )
 
 
-def test_a_system_that_answers_by_samples_may_do_so_half_a_sample_late(fitter: Fitter) -> None:
-    """Its stamps tell as much as those of any other, and yet a delay of a third of a step is none."""
-    late = delayed(fitter, 0.33)
+def test_a_system_that_answers_by_samples_tells_time_less_closely(fitter: Fitter) -> None:
+    """Its stamps tell as much as those of any other, and yet a delay of an eighth of a step is none."""
+    late = delayed(fitter, 0.125)
     by_samples: Any = SimpleNamespace(dof=0, effect=fitter.case.system.info.effect)
     system: Any = SimpleNamespace(info=by_samples)
     assert trouble_with_delays(fitter.case, late, NAME) == ""
-    assert "finer than logs" in trouble_with_delays(replace(fitter.case, system=system), late, NAME)
+    case = replace(fitter.case, system=system)
+    assert "finer than logs" in trouble_with_delays(case, late, NAME)
+    assert trouble_with_delays(case, delayed(fitter, 0.2), NAME) == ""
 
 
 def test_logs_that_were_thinned_had_finer_stamps(fitter: Fitter) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tendonlab.diagnosis.search import contest, rivals, select
+from tendonlab.diagnosis.search import contest, rivals, select, workshop
 from tendonlab.diagnosis.search.contest import Round, next_effect
 from tendonlab.diagnosis.search.rivals import Place, contest_each_place, improve
 from tendonlab.diagnosis.search.screen import Screened
@@ -52,7 +52,7 @@ class Shop:
     """A workshop whose screens and refits are stated; it notes which candidates were refitted."""
 
     def __init__(self, candidates: Sequence[Screened], gains: dict[str, float]) -> None:
-        self.candidates, self.gains, self.refitted = candidates, gains, list[str]()
+        self.candidates, self.gains, self.refitted, self.calls = candidates, gains, list[str](), list[list[str]]()
         self.pool = None
 
     def screen_all(self, fitter: Any, base: Any, label: str) -> list[Screened]:
@@ -62,6 +62,7 @@ class Shop:
         self, fitter: Any, base: Any, chosen: Any, label: str, *, least: float, incumbent: Any = None
     ) -> Refitted:
         self.refitted = [s.effect for s in chosen]
+        self.calls.append(self.refitted)
         fitted = [trial(name, self.gains[name], *base.added) for name in self.refitted if name in self.gains]
         failed = {name: "no fit" for name in self.refitted if name not in self.gains}
         return Refitted(sorted([*fitted, *([incumbent] if incumbent else [])], key=lambda t: -t.evidence_gain), failed)
@@ -82,14 +83,40 @@ def worthy(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 def test_candidates_are_refitted_that_promise_a_third_of_the_bar(
     added: tuple[str, ...], least: float, most: int, worthy: Callable[..., None]
 ) -> None:
-    """The bars are 10 and 30 nats; at most eight candidates for the first effect, four for each further one."""
+    """The bars are 10 and 30 nats; eight candidates for the first effect, four for each further one. Where none of the
+    eight is established, the first effect is sought among four others as well."""
     worthy()
     few: Any = Shop([screened("x", least + 0.1), screened("y", least - 0.1)], {})
     next_effect(FITTER, model(*added), largest_gain=0.0, shop=few)
     assert few.refitted == ["x"]
     many: Any = Shop([screened(f"c{k}", 100.0 - k) for k in range(12)], {})
     next_effect(FITTER, model(*added), largest_gain=0.0, shop=many)
-    assert many.refitted == [f"c{k}" for k in range(most)]
+    assert many.calls[0] == [f"c{k}" for k in range(most)]
+    assert many.calls[1:] == ([] if added else [[f"c{k}" for k in range(8, 12)]])
+
+
+@pytest.mark.parametrize(
+    ("gains", "near", "found", "calls"),
+    [
+        ({"c9": 500.0}, 10.0, "c9", 2),  # beside two missing effects a screen promises little of either
+        ({"c3": 40.0, "c9": 500.0}, 10.0, "c3", 1),
+        ({"c9": 500.0}, 1.2, None, 1),  # near the floor nothing is missed that matters
+    ],
+)
+def test_no_first_effect_is_missed_because_others_promised_more(
+    gains: dict[str, float], near: float, found: str | None, calls: int, worthy: Callable[..., None],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    worthy()
+    monkeypatch.setattr(contest, "_least_gain", lambda *_: 10.0)
+    monkeypatch.setattr(workshop, "counted_alike", lambda trials, _: sorted(trials, key=lambda t: -t.evidence_gain))
+    shop: Any = Shop([screened(f"c{k}", 100.0 - k) for k in range(12)], gains)
+    base = model()
+    base.mean_square = near
+    contested = next_effect(FITTER, base, largest_gain=0.0, shop=shop)
+    assert contested is not None
+    assert (contested.accepted.effect if contested.accepted else None) == found
+    assert len(shop.calls) == calls
 
 
 @pytest.mark.parametrize(("near", "worth", "accepted"), [(1.2, True, "y"), (1.4, True, "x"), (1.4, False, "y")])

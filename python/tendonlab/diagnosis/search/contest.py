@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -20,9 +21,11 @@ from tendonlab.diagnosis.search.trial import (
     Trial,
     bar_for_further_effect,
     explains_enough,
+    explains_half,
     gain_elsewhere,
     is_constant,
     is_friction_beside,
+    is_level_beside,
     is_no_shape,
     plainest_first,
     removes_little,
@@ -42,8 +45,10 @@ FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none
 # Where laws have a shape: the others, where right, were behind by 1.7 nats at most, 192 times.
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
+MATTERS_BESIDE = 0.06  # the same of a level of friction beside other friction: errors of forms removed up to 0.055
 LOST = 0.02  # share of its left-out gain that it may lose in single experiments: what helps in each is there
 ENOUGH = 5  # experiments of which it says something that an effect helps in each
+STEADIER = 0.2  # share of what the first one gains that an effect must gain to take its place because it helps in each
 FIRM = 2.5  # mean square below which a floor from few repeats may be too low: 53 right effects lost 1.6 % at most there
 MIN_SCREEN_GAIN = 0.3  # refit a candidate if its screened gain exceeds this share of the acceptance bar
 
@@ -113,14 +118,16 @@ def next_effect(
         chosen += _remembered(base, screened, chosen, before) if before else []
     else:
         chosen = _behind(chosen, chosen)
-    refitted = shop.refit_all(fitter, base, chosen, label, least=_least_gain(fitter, base, bar))
-    trials = refitted.trials
-    established = {t.effect for t in trials if bar.passed(t)}
-    if trials and trials[0].effect in established:
-        trials = plainest_first(trials, established)
-    leader = trials[0] if trials and trials[0].effect in established else None
-    if leader is None or not _worth_adding(fitter, base, trials, further=further, largest_gain=largest_gain):
-        leader, established = None, set()
+    worth = partial(_worth_adding, fitter, base, further=further, largest_gain=largest_gain)
+    refit = partial(shop.refit_all, fitter, base, label=label, least=_least_gain(fitter, base, bar))
+    refitted = refit(chosen)
+    trials, established = _judged(fitter, base, refitted.trials, bar, worth, further=further)
+    is_lost = not (further or established) and base.mean_square >= NEAR_FLOOR
+    others = _others(screened, chosen, bar) if is_lost else []
+    if others:  # no effect that tells may go unseen
+        refitted = refitted.with_others(refit(others), base)
+        trials, established = _judged(fitter, base, refitted.trials, bar, worth, further=further)
+    leader = trials[0] if established else None
     if leader is None or base.mean_square < NEAR_FLOOR:  # there an effect that beliefs ask for is the plainer answer
         leader = _reliever(fitter, base, trials) or leader
         trials = [leader, *(t for t in trials if t is not leader)] if leader else trials
@@ -132,6 +139,26 @@ def next_effect(
 
 def _promising(screened: Sequence[Screened], bar: Bar) -> list[Screened]:
     return [s for s in screened if s.gain > MIN_SCREEN_GAIN * bar.evidence]
+
+
+def _judged(
+    fitter: Fitter, base: Fitted, trials: list[Trial], bar: Bar, worth: Callable[[list[Trial]], bool], *, further: bool
+) -> tuple[list[Trial], Set[str]]:
+    """The trials, the one to accept first, and the effects that are established: none where none is worth adding."""
+    established = {t.effect for t in trials if bar.passed(t)}
+    if trials and trials[0].effect in established:
+        trials = plainest_first(trials, established)
+        trials = _steadier_first(fitter, base, trials, further=further)
+    if not trials or trials[0].effect not in established or not worth(trials):
+        established = set()
+    return trials, established
+
+
+def _others(screened: Sequence[Screened], chosen: Sequence[Screened], bar: Bar) -> list[Screened]:
+    """The most promising of those that gave way to others: beside two missing effects a screen promises little of
+    either."""
+    taken = {s.effect for s in chosen}
+    return [s for s in _promising(screened, bar) if s.effect not in taken][:NUM_HIDDEN]
 
 
 def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar, shop: Workshop) -> list[Screened]:
@@ -195,13 +222,17 @@ def _worth_adding(
     noise. Near the floor, beyond the first effect and where it explains little, it must predict experiments that it
     was not fitted to."""
     near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
-    if repeated and not further and base.mean_square < FIRM and trials[0].lost >= LOST:
+    if not (further or _helps_in_each(fitter, base, trials[0])):
         return False
     is_little = removes_little(base, trials[0])
     counts = _evidence_counts(fitter, base, trials[0].effect)
     tells = CLEAR.passed(trials[0]) and (trials[0].evidence_gain > HIDDEN or not is_friction_beside(base, trials[0]))
     is_clear = tells and trials[0].lost < LOST and not is_little and counts
-    if near_floor and not is_clear and first.mean_square > (1.0 - MATTERS) * base.mean_square:
+    is_beside = is_level_beside(base, trials[0])
+    matters = MATTERS_BESIDE if is_beside else MATTERS
+    if near_floor and (is_beside or not is_clear) and first.mean_square > (1.0 - matters) * base.mean_square:
+        return False
+    if is_beside and not repeated and not explains_half(base, first):
         return False
     if repeated and further:
         elsewhere = gain_elsewhere(base, trials[0], heard=fitter.case.replay.output)
@@ -211,6 +242,22 @@ def _worth_adding(
     if not (enough or may_be_noise(fitter.case, first)):
         return False
     return (enough and not near_floor and not further) or predicts_better(fitter, base, first)
+
+
+def _helps_in_each(fitter: Fitter, base: Fitted, trial: Trial) -> bool:
+    """Whether the first effect helps in each experiment, which is asked for not far above a floor from repeats."""
+    return not fitter.floor.repeated or base.mean_square >= FIRM or trial.lost < LOST
+
+
+def _steadier_first(fitter: Fitter, base: Fitted, trials: list[Trial], *, further: bool) -> list[Trial]:
+    """The trials, best first. Where the first effect does not help in each experiment, the best one comes first that
+    does and tells as clearly: of two missing effects, the one that other experiments contradict is the larger one."""
+    if further or _helps_in_each(fitter, base, trials[0]):
+        return trials
+    enough = max(HIDDEN, STEADIER * trials[0].evidence_gain)
+    steady = (t for t in trials[1:] if t.lost < LOST and t.left_out_gain > enough and not removes_little(base, t))
+    first = next((t for t in steady if t.evidence_gain > enough), trials[0])
+    return [first, *(t for t in trials if t is not first)]
 
 
 def _reliever(fitter: Fitter, base: Fitted, trials: Sequence[Trial]) -> Trial | None:

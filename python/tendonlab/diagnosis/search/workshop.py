@@ -43,6 +43,11 @@ class Refitted:
     trials: list[Trial]
     failed: Mapping[str, str]
 
+    def with_others(self, others: Refitted, base: Fitted) -> Refitted:
+        """These and others that extend the same base."""
+        trials = counted_alike([*self.trials, *others.trials], base)
+        return Refitted(trials, {**self.failed, **others.failed})
+
 
 @dataclass(frozen=True)
 class Workshop:
