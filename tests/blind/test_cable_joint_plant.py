@@ -192,12 +192,13 @@ def test_the_library_runs_alike_without_noise(effect: str):
     for lane, experiment in enumerate(runs):
         values = {name: value + experiment.add.get(name, 0.0) for name, value in truth.items()}
         system = tl.System(kind="cable_joint", parameters=values, effects=contained)
-        driven = pd.DataFrame({"actuator_velocity": experiment.reference}, index=pd.Index(run.time, name="t"))
-        other = system.simulate(driven)
+        read = dict(zip(CABLE_JOINT.output_names, run.outputs[:, :, lane], strict=True))  # which tell how it begins
+        log = pd.DataFrame({"actuator_velocity": experiment.reference, **read}, index=pd.Index(run.time, name="t"))
+        other = system.simulate(log)
         for i, name in enumerate(CABLE_JOINT.output_names):
             left = np.abs(run.outputs[i, :, lane] - np.asarray(other[name])) / USUAL[i]
             left = left[np.abs(run.outputs[VELOCITY, :, lane]) > 1e-6] if dry else left
-            assert np.quantile(left, 0.95) < (0.5 if effect in ("load:offset", "gear:ripple") else 0.2)
+            assert np.quantile(left, 0.95) < (0.5 if effect == "gear:ripple" else 0.2)
 
 
 @pytest.mark.parametrize("excitation", ["rich", "poor"])

@@ -222,34 +222,30 @@ def test_without_repeats_a_second_level_of_friction_must_remove_half_of_the_rest
 
 
 @pytest.mark.parametrize(
-    ("repeated", "further", "near", "first"),
-    [(True, False, 2.0, "c"), (False, False, 2.0, "a"), (True, True, 2.0, "a"), (True, False, 3.0, "a")],
+    ("repeated", "further", "near", "gain", "first"),
+    [
+        (True, False, 2.0, 300.0, "c"),
+        (True, False, 2.0, 190.0, "a"),  # less than a fifth of what the first one gains
+        (True, False, 1.52, 300.0, "a"),  # it removes less than a tenth of what is left
+        (False, False, 2.0, 300.0, "a"),
+        (True, True, 2.0, 300.0, "a"),
+        (True, False, 3.0, 300.0, "a"),
+    ],
 )
 def test_of_two_missing_effects_the_one_that_helps_in_each_experiment_comes_first(
-    repeated: bool, further: bool, near: float, first: str
+    repeated: bool, further: bool, near: float, gain: float, first: str
 ) -> None:
     """Not far above a floor from repeats: there an effect that costs single experiments is not established."""
     of: Any = SimpleNamespace(mean_square=near)
     trials = [
         trial("a", 1000.0, left_out=1000.0, lost=0.07, mean_square=1.2),
         trial("b", 900.0, left_out=900.0, lost=0.03, mean_square=1.2),
-        trial("c", 300.0, left_out=300.0, lost=0.0, mean_square=1.5),
-        trial("d", 250.0, left_out=250.0, lost=0.0, mean_square=1.5),
+        trial("c", gain, left_out=gain, mean_square=1.5),
+        trial("d", 0.9 * gain, left_out=0.9 * gain, mean_square=1.5),
     ]
     found = contest._steadier_first(fitter_of(repeated=repeated), of, trials, further=further)
     assert found[0].effect == first
     assert sorted(t.effect for t in found) == ["a", "b", "c", "d"]
-
-
-@pytest.mark.parametrize(("gain", "left"), [(190.0, 1.5), (300.0, 1.95)])
-def test_an_effect_that_helps_in_each_experiment_must_tell_as_well(gain: float, left: float) -> None:
-    """A fifth of what the first one gains, and a tenth of what is left."""
-    trials = [
-        trial("a", 1000.0, left_out=1000.0, lost=0.07, mean_square=1.2),
-        trial("c", gain, left_out=gain, lost=0.0, mean_square=left),
-    ]
-    of: Any = SimpleNamespace(mean_square=2.0)
-    assert contest._steadier_first(fitter_of(repeated=True), of, trials, further=False) == trials
 
 
 @pytest.mark.parametrize(
