@@ -225,7 +225,7 @@ def is_friction_beside(base: Fitted, trial: Trial) -> bool:
 
 def is_level_beside(base: Fitted, trial: Trial) -> bool:
     """The same where the law adds to the level of friction. Friction of another form than the library's looks like two
-    levels: 12 times of 14 where nothing repeats and the second one removed less than 0.55 of the rest."""
+    levels: 11 times of 13 where nothing repeats, and removes 0.54 of the rest at most."""
     return is_friction_beside(base, trial) and bool(trial.fitted.system.info.effect(trial.effect).roles & LEVEL)
 
 
