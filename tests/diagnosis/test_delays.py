@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tendonlab.diagnosis.search import workshop
 from tendonlab.diagnosis.search.delays import LEAST, trouble_with_delays, twin_delays, with_twins_even
 from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.diagnosis.search.workshop import Refitted
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -78,3 +80,15 @@ def test_a_late_command_and_the_only_sensor_late_are_twins_beside_a_logged_comma
     assert [t.left_out_gain for t in with_twins_even(case, trials)[:2]] == [1.0, 1.0]
     even = [(t.effect, t.evidence_gain) for t in with_twins_even(case, trials)]
     assert even == [("sensor.joint_angle:delay", 90.0), ("actuation:delay", 90.0), ("joint:presliding", 70.0)]
+
+
+def test_twins_stay_even_where_trials_are_joined(fitter: Fitter, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workshop, "counted_alike", lambda trials, _: sorted(trials, key=lambda t: -t.evidence_gain))
+    late, other = (
+        Refitted([Trial(name, None, gain, 1.0, 0.0)], {name: "no fit"})  # type: ignore[arg-type]
+        for name, gain in (("sensor.joint_angle:delay", 90.0), ("actuation:delay", 60.0))
+    )
+    nothing: Any = None
+    joined = late.with_others(other, nothing, alone(fitter.case, kind="injection"))
+    assert [t.evidence_gain for t in joined.trials] == [90.0, 90.0]
+    assert set(joined.failed) == {"sensor.joint_angle:delay", "actuation:delay"}

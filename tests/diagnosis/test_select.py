@@ -75,6 +75,7 @@ def worthy(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         monkeypatch.setattr(contest, "at_believed_values", lambda fitter, base: (fitter, base))
         monkeypatch.setattr(contest, "_worth_adding", lambda *_, **__: worth)
         monkeypatch.setattr(contest, "plainest_first", lambda trials, _: trials)
+        monkeypatch.setattr(workshop, "with_twins_even", lambda _, trials: trials)
 
     return set_up
 

@@ -125,7 +125,7 @@ def next_effect(
     is_lost = not (further or established) and base.mean_square >= NEAR_FLOOR
     others = _others(screened, chosen, bar) if is_lost else []
     if others:  # no effect that tells may go unseen
-        refitted = refitted.with_others(refit(others), base)
+        refitted = refitted.with_others(refit(others), base, fitter.case)
         trials, established = _judged(fitter, base, refitted.trials, bar, worth, further=further)
     leader = trials[0] if established else None
     if leader is None or base.mean_square < NEAR_FLOOR:  # there an effect that beliefs ask for is the plainer answer

@@ -1,8 +1,8 @@
 """Delays shorter than anything that logs tell of time.
 
 Stamps have a resolution, and whether a controller's command or reference is held, averaged or straight between its
-samples is known to a part of a sample at best: each of these looks like a short delay. So does more of a sample where a
-system without degrees of freedom answers sample by sample."""
+samples is known to a part of a sample at best: each of these looks like a short delay. A system without degrees of
+freedom answers sample by sample and tells delays less closely."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.report.numbers import number
 
 LEAST = 0.05  # of the step of the logs
-LEAST_BY_SAMPLES = 0.15  # the same where a system answers sample by sample, its inputs between samples as they may
+LEAST_BY_SAMPLES = 0.15  # the same where a system answers sample by sample: right ones were 0.19 and longer
 NEXT_TO_NOTHING = 0.01  # of the least delay: a shorter one has no digits worth printing
 TOO_SHORT = "its delay of {} ms is shorter than {} ms, finer than logs with steps of {} ms tell time"
 

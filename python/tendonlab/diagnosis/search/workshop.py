@@ -17,6 +17,7 @@ from tendonlab.diagnosis.search.shares import with_whole_shares
 from tendonlab.diagnosis.search.stiction import trouble_with_stiction
 from tendonlab.diagnosis.search.trial import Trial, counted_alike
 from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 from tendonlab.progress import track
@@ -43,10 +44,10 @@ class Refitted:
     trials: list[Trial]
     failed: Mapping[str, str]
 
-    def with_others(self, others: Refitted, base: Fitted) -> Refitted:
+    def with_others(self, others: Refitted, base: Fitted, case: Case) -> Refitted:
         """These and others that extend the same base."""
         trials = counted_alike([*self.trials, *others.trials], base)
-        return Refitted(trials, {**self.failed, **others.failed})
+        return Refitted(with_twins_even(case, trials), {**self.failed, **others.failed})
 
 
 @dataclass(frozen=True)
