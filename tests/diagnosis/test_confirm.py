@@ -144,6 +144,22 @@ def test_an_effect_beside_others_must_remove_more(
     assert search.selected == ((FIRST, SECOND) if kept or repeated else (FIRST,))
 
 
+@pytest.mark.parametrize(("gained", "after", "kept"), [(99.0, 1.66, False), (101.0, 1.66, True), (101.0, 1.69, False)])
+def test_a_clear_effect_beside_others_may_leave_more(
+    found: Callable[..., Search],
+    shop: Callable[..., Any],
+    monkeypatch: pytest.MonkeyPatch,
+    gained: float,
+    after: float,
+    kept: bool,
+) -> None:
+    """Of 3 four tenths are 1.2, which is left at sqrt(2.8) = 1.67."""
+    replays = shop(100.0, 2.0, after, gain=50.0)
+    monkeypatch.setattr(confirm, "_gained", lambda search: gained)
+    search = confirm.confirmed(found(FIRST, SECOND), replays)
+    assert search.selected == ((FIRST, SECOND) if kept else (FIRST,))
+
+
 def test_nothing_is_added_where_others_left_less(found: Callable[..., Search], shop: Callable[..., Any]) -> None:
     search = confirm.confirmed(found(FIRST, SECOND), shop(10.0, 0.8, 0.9, gain=50.0))
     assert search.selected == (FIRST,)

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis.search import workshop
-from tendonlab.diagnosis.search.delays import LEAST, trouble_with_delays, twin_delays, with_twins_even
+from tendonlab.diagnosis.search.delays import (
+    LEAST,
+    RESOLVED,
+    trouble_with_delays,
+    twin_delays,
+    value_and_interval,
+    with_twins_even,
+)
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.diagnosis.search.workshop import Refitted
 from tendonlab.fitting.case import Case
@@ -92,3 +99,18 @@ def test_twins_stay_even_where_trials_are_joined(fitter: Fitter, monkeypatch: py
     joined = late.with_others(other, nothing, alone(fitter.case, kind="injection"))
     assert [t.evidence_gain for t in joined.trials] == [90.0, 90.0]
     assert set(joined.failed) == {"sensor.joint_angle:delay", "actuation:delay"}
+
+
+def test_the_interval_of_a_delay_is_no_finer_than_logs_tell_time(fitter: Fitter) -> None:
+    """In quadrature with what residuals tell; other parameters keep theirs."""
+    model = delayed(fitter, 2.0)
+    finest = RESOLVED * float(np.median(np.diff(fitter.case.experiments[0].time)))
+    for name in (f.name for f in model.free):
+        value, (lower, upper) = model.value(name)
+        told, ends = value_and_interval(fitter.case, model, name)
+        assert told == value
+        if name == "actuation_delay":
+            assert ends[1] - value == pytest.approx(np.hypot(upper - value, finest))
+            assert ends[0] == pytest.approx(max(0.0, value - np.hypot(value - lower, finest)))
+        else:
+            assert ends == (lower, upper)

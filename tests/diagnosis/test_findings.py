@@ -79,14 +79,14 @@ def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(mo
     system = SimpleNamespace(
         info=SimpleNamespace(
             effect=lambda _: SimpleNamespace(parameters=("joint_level", "joint_shape")),
-            parameter=lambda name: SimpleNamespace(own=name.removeprefix("joint_")),
+            parameter=lambda name: SimpleNamespace(own=name.removeprefix("joint_"), effect="a"),
         ),
         unit=lambda _: "N*m",
     )
     fitted: Any = SimpleNamespace(
         added=("joint:a",), system=system, free=[SimpleNamespace(name="joint_level")], value=lambda _: (0.3, (0.2, 0.5))
     )
-    search: Any = SimpleNamespace(fitter=None, selected=(), refuted=())
+    search: Any = SimpleNamespace(fitter=SimpleNamespace(case=None), selected=(), refuted=())
     judged: Any = SimpleNamespace(case=None, experiments=())
     found = _numbers(search, Trial("joint:a", fitted, 9.0, 9.0, 0.0), judged, judged, 0)
     assert found == {"parameters": {"level": {"value": 0.3, "ci95": [0.2, 0.5], "unit": "N*m"}}}

@@ -23,7 +23,6 @@ from tendonlab.diagnosis.answer.verdict import (
     marginals,
 )
 from tendonlab.diagnosis.discrepancy import (
-    FAR_SCATTERED,
     FAR_TRAINED,
     FOLLOWED,
     FOLLOWED_BESIDE,
@@ -48,23 +47,6 @@ def test_what_lies_far_above_an_assumed_floor_is_no_noise(left: float) -> None:
     found = nothing_selected(refitted=left)
     assert found.verdict == "unknown_effect"
     assert found.probability["parameters_only"] < 0.01
-
-
-@pytest.mark.parametrize(
-    "signs",
-    [
-        {"trained": 1.5 * FAR_TRAINED},
-        {"patterns": Patterns(2.0 * FOLLOWED)},
-        {"patterns": Patterns(0.0, 2.0 * RINGS)},
-        {"scattered": 1.5 * FAR_SCATTERED},
-    ],
-)
-def test_what_friction_does_not_scatter_or_what_follows_the_motion_is_no_noise(signs: dict[str, Any]) -> None:
-    near = Levels(nominal=1e4, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=False)
-    assert decide((), (), near).verdict == "parameters_only"
-    found = decide((), (), replace(near, **signs))
-    assert found.verdict == "unknown_effect"
-    assert found.probability["parameters_only"] < 0.05
 
 
 @pytest.mark.parametrize("repeated", [False, True])

@@ -11,9 +11,11 @@ import numpy as np
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.judged import Judged
+from tendonlab.diagnosis.search.delays import value_and_interval
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.case import Case
 from tendonlab.report.diagnosis import EffectFinding
 
 
@@ -55,7 +57,7 @@ def _telling_trials(search: Search) -> dict[str, Trial]:
 
 def _numbers(search: Search, trial: Trial, weighed: Judged, shown: Judged, seed: int) -> dict[str, Any]:
     fitter = search.fitter
-    about: dict[str, Any] = {"parameters": _parameters(trial)}
+    about: dict[str, Any] = {"parameters": _parameters(fitter.case, trial)}
     try:
         replayed = _replayed(weighed, trial, search)
     except NumericalError:  # a candidate that the training experiments already speak against
@@ -84,14 +86,14 @@ def _kept(trial: Trial, search: Search) -> list[str]:
     return [name for name in trial.fitted.added if name == trial.effect or name not in search.refuted]
 
 
-def _parameters(trial: Trial) -> dict[str, dict[str, Any]]:
+def _parameters(case: Case, trial: Trial) -> dict[str, dict[str, Any]]:
     fitted = trial.fitted
     info = fitted.system.info
     free = {f.name for f in fitted.free}
     rows = {}
     for name in info.effect(trial.effect).parameters:
         if name in free:
-            value, interval = fitted.value(name)
+            value, interval = value_and_interval(case, fitted, name)
             rows[info.parameter(name).own] = {
                 "value": value,
                 "ci95": list(interval),

@@ -16,6 +16,7 @@ from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
 from tendonlab.diagnosis.beliefs import has_vanished
 from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, RINGS
 from tendonlab.diagnosis.drift import Drift
+from tendonlab.diagnosis.search.delays import value_and_interval
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.workshop import NOTHING
 from tendonlab.fitting.case import Case
@@ -239,6 +240,11 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
             f"The remaining error is {levels.trained**0.5:.2g} times as large as sensors and friction that differs by "
             f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % from run to run leave. So it is not noise."
         )
+    elif levels.beyond_sensors >= 1.0 and not selected:
+        found.append(
+            f"The remaining error is {levels.tuned**0.5:.2g} times as large as the noise of the sensors, though the "
+            "fit lets friction differ from run to run. So it is not noise."
+        )
     if levels.scattered >= FAR_SCATTERED:
         found.append(
             f"The fit needs friction that differs by {100 * RUN_TO_RUN_UNKNOWN * levels.scattered**0.5:.0f} % from run "
@@ -312,7 +318,7 @@ def details(case: Case, floor: Floor, nominal: Fitted, search: Search, drift: Dr
 
 
 def _parameter(case: Case, model: Fitted, name: str) -> dict[str, Any]:
-    value, interval = model.value(name)
+    value, interval = value_and_interval(case, model, name)
     return {
         "value": value,
         "ci95": list(interval),

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from tendonlab.diagnosis.discrepancy import (
+    FAR_SCATTER,
     FAR_SCATTERED,
+    FAR_SENSED,
     FAR_TRAINED,
     FOLLOWED,
     FOLLOWED_BESIDE,
@@ -93,6 +95,12 @@ class Levels:
     def is_by_beliefs(self) -> bool:
         """Whether beliefs speak for the selected effects, and held-out experiments hardly."""
         return self.relieved and (self.explained or 0.0) < EXPLAINED
+
+    @property
+    def beyond_sensors(self) -> float:
+        """How far what tuning leaves exceeds what is noise where nothing repeats; from 1 on it is none. The friction of
+        each run is fitted, so that sensors should leave the rest, and friction that differs hardly."""
+        return 0.0 if self.repeated else min(self.tuned / FAR_SENSED, self.trained / FAR_SCATTER)
 
     def most_followed(self, *, selected: bool) -> float:
         """Share of what the final model leaves that may follow the motion; beyond that something is missing. Where
@@ -178,7 +186,7 @@ def _room(levels: Levels) -> float:
     common = min(levels.far_room, noise, _chance_room(levels), _belief_room(levels, STRAINED))
     if levels.repeated:
         return min(NEAR_FLOOR - levels.tuned, common)
-    return min(SOFT, FAR_SCATTERED - levels.scattered, common)
+    return min(SOFT, FAR_SCATTERED - levels.scattered, 1.0 - levels.beyond_sensors, common)
 
 
 def _belief_room(levels: Levels, most: float) -> float:

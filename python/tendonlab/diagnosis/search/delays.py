@@ -6,6 +6,7 @@ freedom answers sample by sample and tells delays less closely."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -19,6 +20,7 @@ from tendonlab.report.numbers import number
 LEAST = 0.05  # of the step of the logs
 LEAST_BY_SAMPLES = 0.15  # the same where a system answers sample by sample: right ones were 0.19 and longer
 NEXT_TO_NOTHING = 0.01  # of the least delay: a shorter one has no digits worth printing
+RESOLVED = 0.03  # of the step: half of the 95 % interval within which logs tell a delay at best
 TOO_SHORT = "its delay of {} ms is shorter than {} ms, finer than logs with steps of {} ms tell time"
 
 
@@ -29,7 +31,7 @@ def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
     law = info.effect(effect)
     if law.effect != "delay" or any(e.averaged for e in case.experiments):
         return ""
-    step = float(np.median([np.median(np.diff(e.time)) for e in case.experiments]))
+    step = _step(case)
     least = (LEAST if info.dof else LEAST_BY_SAMPLES) * step
     delay = fitted.system.parameters[law.parameters[0]]
     if delay >= least:
@@ -37,6 +39,22 @@ def trouble_with_delays(case: Case, fitted: Fitted, effect: str) -> str:
     shortest = NEXT_TO_NOTHING * least
     told = _ms(delay) if delay >= shortest else f"less than {_ms(shortest)}"
     return TOO_SHORT.format(told, _ms(least), _ms(step))
+
+
+def value_and_interval(case: Case, fitted: Fitted, name: str) -> tuple[float, tuple[float, float]]:
+    """Fitted value of a free parameter and its 95 % interval. That of a delay holds what logs tell of time besides:
+    residuals say nothing of an error that all of them share."""
+    value, (lower, upper) = fitted.value(name)
+    if fitted.system.info.parameter(name).effect != "delay":
+        return value, (lower, upper)
+    finest = RESOLVED * _step(case)
+    below, above = math.hypot(value - lower, finest), math.hypot(upper - value, finest)
+    return value, (max(0.0, value - below), value + above)
+
+
+def _step(case: Case) -> float:
+    """Median step of the logs, s."""
+    return float(np.median([np.median(np.diff(e.time)) for e in case.experiments]))
 
 
 def _ms(seconds: float) -> str:
