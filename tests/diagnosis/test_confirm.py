@@ -16,6 +16,7 @@ from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.search.contest import Round
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import Trial
+from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import Floor
 from tendonlab.fitting.problem import Fitter
@@ -81,7 +82,7 @@ def shop(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
         monkeypatch.setattr(heldout, "predictive_gain", lambda *_: {"mean": gain, "se": 1.0})
         monkeypatch.setattr(confirm, "renewed", lambda fitter, model, pool: (fitter, model))
         monkeypatch.setattr(confirm, "_gained", lambda search: accepted_last(search).left_out_gain)
-        monkeypatch.setattr(heldout, "models", lambda case, model, judged: [len(model.added)])
+        monkeypatch.setattr(heldout, "models", lambda case, model, judged: [len(model.added)] * len(judged))
         monkeypatch.setattr(heldout, "replay", lambda case, models, judged: replayed(*[errors[models[0]]] * 3))
         return SimpleNamespace(pool=None)
 
@@ -163,6 +164,25 @@ def test_a_clear_effect_beside_others_may_leave_more(
 def test_nothing_is_added_where_others_left_less(found: Callable[..., Search], shop: Callable[..., Any]) -> None:
     search = confirm.confirmed(found(FIRST, SECOND), shop(10.0, 0.8, 0.9, gain=50.0))
     assert search.selected == (FIRST,)
+
+
+def test_an_experiment_that_cannot_be_replayed_leaves_the_others_to_judge(
+    found: Callable[..., Search], shop: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replays, judged = shop(10.0, 9.5, gain=-1.0), []
+    search, replay = found(FIRST), heldout.replay
+    first, *others = search.fitter.case.test
+
+    def some(case: Any, models: Any, experiments: Any) -> Replayed:
+        if first in experiments:
+            raise NumericalError("it bounces")
+        judged.append(experiments)
+        return replay(case, models, experiments)
+
+    monkeypatch.setattr(heldout, "replay", some)
+    assert others
+    assert confirm.confirmed(search, replays).selected == ()
+    assert judged
 
 
 def test_without_held_out_experiments_nothing_is_refuted(

@@ -34,7 +34,7 @@ def case(residual: Any) -> Any:
         measured=[0],
         scatter=((), ()),
         prepared=[SimpleNamespace(measured=np.zeros((1, len(TIME))), core=SimpleNamespace(time=5.0 + TIME))] * 5,
-        system=SimpleNamespace(info=SimpleNamespace(ports=["joint"])),
+        system=SimpleNamespace(info=SimpleNamespace(ports=["joint"], steady=False)),
         run=lambda i, *_, **__: runs[i],
     )
 
@@ -84,6 +84,15 @@ def test_a_resonance_is_no_noise() -> None:
     assert patterns(rig, MODEL).ringing == pytest.approx(0.5, abs=0.2)
     assert patterns(rig, MODEL).frequency == pytest.approx(6.0, rel=0.1)
     assert not may_be_noise(rig, MODEL)
+
+
+def test_steady_points_have_no_frequencies_and_no_time() -> None:
+    """The order of their rows means nothing."""
+    drifting, rig = case(lambda q, v, k: TIME - 5.0 + noise(q)), case(ringing)
+    assert patterns(drifting, MODEL).followed > FOLLOWED
+    drifting.system.info.steady = rig.system.info.steady = True
+    assert patterns(drifting, MODEL).followed < FOLLOWED
+    assert patterns(rig, MODEL).ringing == 0.0
 
 
 def test_a_band_in_which_the_rig_is_moved_is_no_resonance() -> None:

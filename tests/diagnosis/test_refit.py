@@ -161,7 +161,7 @@ def test_a_fit_that_misses_its_goal_is_a_sketch_unless_it_gains_half_of_what_a_r
     fits = [fit_of(cost=cost, gain=gain), fit_of(cost=10.0, gain=9.0)][:num_fits]
     fitter: Any = Fits(*fits)
     fitter.releveled = lambda fit: fit
-    worth, whole = refits._fit(fitter, tuned(), {"b": {}}, None, pace=10.0)
+    worth, whole = refits._fit(fitter, tuned(), "b", {}, None, pace=10.0)
     assert (worth, whole) == (fits[-1], fits[-1] if is_whole else None)
     assert len(fitter.asked) == num_fits
     assert all(asked.get("goal") is None for asked in fitter.asked[1:])

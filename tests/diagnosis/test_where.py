@@ -140,6 +140,15 @@ def test_an_error_that_sits_at_low_speed_is_a_regime_and_one_without_a_place_is_
     assert 1 / 401 <= even["p_value"] <= 1.0
 
 
+@pytest.mark.parametrize("steady", [False, True])
+def test_no_regime_is_one_of_the_order_of_steady_points(steady: bool) -> None:
+    system = SimpleNamespace(info=SimpleNamespace(ports=[SimpleNamespace(name="contact")], steady=steady))
+    of = replayed(1.0 + np.sin(5.0 * TIME))
+    found = where.regimes(case(1, system=system), of, floor(1.0), port_records(2.0 + np.sin(3.0 * TIME)))
+    assert ("time" in {row["coordinate"] for row in found}) is not steady
+    assert "contact_load" in {row["coordinate"] for row in found}
+
+
 def port_records(load: np.ndarray) -> Any:
     ports = {"velocity": np.sin(TIME), "position": np.cos(TIME), "load": load}
     return SimpleNamespace(coordinate=lambda port, quantity: ports[quantity], time=TIME)

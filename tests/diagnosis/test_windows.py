@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from tendonlab.data import Dataset, Experiment
-from tendonlab.diagnosis.windows import _parts, in_windows
+from tendonlab.diagnosis.windows import _parts, in_windows, is_of
 
 TIME = np.arange(0.0, 6.4, 0.005)
 
@@ -49,6 +49,14 @@ def test_parts_cover_the_run_and_share_their_ends() -> None:
     assert all(part.duration == pytest.approx(1.0, abs=0.1) for part in parts)
     assert [part.initial for part in parts] == [{"joint_velocity": 0.0}, *[{}] * 5]  # known of the beginning alone
     assert all(part.conditions == {"gravity_torque": 2.0} for part in parts)
+
+
+def test_parts_of_a_run_repeat_nothing() -> None:
+    parts = list(_parts(run("a", repeat="sweep")))
+    assert [part.repeat for part in parts] == [None] * 6
+    assert all(is_of(part.name, "a") and not is_of(part.name, "b") for part in parts)
+    assert is_of("a", "a")
+    assert is_of("a (part 1)", "a (part 1)")  # a name that the user gave
 
 
 def test_a_run_of_few_samples_has_parts_that_can_be_diagnosed() -> None:

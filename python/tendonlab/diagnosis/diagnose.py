@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tendonlab.checking.check import check
 from tendonlab.checking.samples import FEWEST
 from tendonlab.checking.spikes import without_outliers
-from tendonlab.data import Dataset, require_dataset
+from tendonlab.data import Dataset, require_dataset, simulator_of
 from tendonlab.diagnosis.answer.answer import answer
 from tendonlab.diagnosis.answer.confirm import confirmed
 from tendonlab.diagnosis.fault import data_fault
@@ -76,15 +76,13 @@ def diagnose(
     `seed` that is no whole number. Ctrl-C stops it. How it works: docs/method.md."""
     require_dataset(dataset)
     began, seed = time.monotonic(), checked(seed)
-    names = _library(dataset, library)
+    system, names = simulator_of(dataset, system), _library(dataset, library)
     _require_samples(dataset)
     found = check(dataset, system=system)
     if found.blocks and not force:
-        used = dataset.system() if system is None else system
-        return data_fault(dataset, used, found, seed=seed, seconds=time.monotonic() - began)
+        return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
     if any(finding.problem == "outliers" for finding in found.findings):
         dataset = without_outliers(dataset)
-    system = dataset.system() if system is None else system
     with open_workshop(names, progress=progress) as shop:
         of = _search(dataset, system, shop)
         found = checked_again(found, dataset, of.search)

@@ -25,8 +25,8 @@ FAR_SCATTERED = 4.0  # mean square of run-to-run factors over what is plausible:
 FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
 FOLLOWED_REPEATED = 0.06  # the same where repeats tell the noise: 77 rigs that lack nothing left 0.03 at most
 FOLLOWED_BESIDE = 0.4  # the same beside effects, whose form may differ: right ones not at the floor left 0.3 at most
-ENOUGH = 5  # experiments to learn from where some repeat: a motion's repeats share what happens by chance
 RINGS = 0.2  # the same of one narrow band of frequencies: models without a resonance to find left 0.11 at most
+ENOUGH = 5  # experiments to learn from where some repeat: a motion's repeats share what happens by chance
 BAND, NUM_BANDS = 0.2, 60  # half width of a band of frequencies, of its middle, and how many are looked at
 LEAST_PERIODS = 10.0  # of the lowest band in the shortest run: fewer hardly fill a band
 DRIVEN = 0.02  # share of the motion, or of its sign, in such a band, beyond which friction alone fills it
@@ -81,7 +81,8 @@ def _followed(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: S
         velocities, positions = ([np.asarray(run["ports"])[port][k] for run in runs] for k in (0, 1))
         if np.ptp(np.concatenate(positions)) == 0.0:
             continue
-        for cells in (_cells(velocities, positions, NUM_KNOTS), _cells(velocities, times, NUM_TIMES)):
+        over_time = [] if case.system.info.steady else [_cells(velocities, times, NUM_TIMES)]
+        for cells in (_cells(velocities, positions, NUM_KNOTS), *over_time):
             shares += [foretold(cells, [r[c] for r in residuals]) for c in case.measured]
     return max(shares)
 
@@ -91,7 +92,9 @@ def _ringing(
 ) -> tuple[float, float]:
     """Largest share of the mean square residual of an output in one narrow band of frequencies beyond what the bands
     beside it hold, in most experiments, where neither the motion nor its sign has such a band: a resonance that the
-    model lacks, whatever excites it. And the middle of that band, Hz."""
+    model lacks, whatever excites it. And the middle of that band, Hz. Steady points have no frequencies."""
+    if case.system.info.steady:
+        return 0.0, 0.0
     times = [np.asarray(case.prepared[i].core.time) for i in case.train]
     lowest = LEAST_PERIODS / min(time[-1] - time[0] for time in times)
     highest = 0.5 / max(np.median(np.diff(time)) for time in times) / (1.0 + 3.0 * BAND)

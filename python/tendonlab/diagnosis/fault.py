@@ -8,11 +8,12 @@ from tendonlab import _core
 from tendonlab.checking.finding import Check
 from tendonlab.data import Dataset, Experiment
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.noise import noise_of
+from tendonlab.fitting.set_points import points_of
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.report.words import STAGES, VERDICTS
 from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.prepare import Replay, prepare
-from tendonlab.simulation.reading import noise_sd
 from tendonlab.simulation.system import System
 
 ATTEMPTS = 5  # of the stepper per sample: what needs more is given up
@@ -57,9 +58,17 @@ def _nominal_gap(dataset: Dataset, system: System, kind: str) -> dict[str, dict[
     for name in dataset.outputs:
         known = [one[name] for one in errors if one is not None and name in one]
         level = (sum(known) / len(known)) ** 0.5 if known and len(known) == len(errors) else None
-        noise = max(noise_sd(e.data[name].to_numpy(dtype=float)) for e in dataset.experiments)
-        gap[name] = {"noise_floor": noise, **dict.fromkeys(STAGES), "nominal": level}
+        gap[name] = {"noise_floor": _noise(dataset, system, name), **dict.fromkeys(STAGES), "nominal": level}
     return gap
+
+
+def _noise(dataset: Dataset, system: System, output: str) -> float:
+    """Sd of the white noise of an output, in its unit, as it is stated or as its records show it."""
+    experiments = [e for e in dataset.experiments if output in e.data]
+    records = [e.data[output].to_numpy(dtype=float) for e in experiments]
+    inputs = [s.name for s in system.info.inputs]
+    points = points_of(experiments, inputs, records) if system.info.steady else None
+    return noise_of(dataset.signals[output], records, points)
 
 
 def _errors(experiment: Experiment, system: System, kind: str) -> dict[str, float] | None:

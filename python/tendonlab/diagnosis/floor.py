@@ -16,7 +16,7 @@ from tendonlab.fitting.noise import Floor, white
 from tendonlab.fitting.problem import Fitter, pose
 from tendonlab.fitting.starts import annealed
 
-ROUGH, NEARLY = 8, 1e-4  # iterations and tolerance of the fit under white noise, of which only the residuals are used
+ROUGH, NEARLY = 8, 1e-4  # iterations and tolerance of fits under the sensors' white noise
 
 
 def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:

@@ -59,11 +59,11 @@ def straight_inputs(dataset: Dataset, system: System, search: Search, shop: Work
     names = tuple(_held(dataset, system))
     if not names or dataset.controller is not None or system.info.sampled:
         return None
-    held = _under_white(search.fitter.case, search.final, shop, solve=False)
-    if held.mean_square < EXPLAINED:
-        return None
     drawn = _straight(dataset, names)
     try:
+        held = _under_white(search.fitter.case, search.final, shop, solve=False)
+        if held.mean_square < EXPLAINED:
+            return None
         case = make_case(thinned(drawn, system), system)
         left = _under_white(case, search.final, shop, solve=False)
         if left.mean_square > held.mean_square:  # as the model is, which was fitted to held samples

@@ -16,6 +16,7 @@ from tendonlab.diagnosis.search.select import Search
 WINDOW = 1.0  # s
 FEW = 8.0  # samples of an experiment that count as independent, below which its parts tell more
 LARGE = 8.0  # times the floor (mean square) that the model must leave: below, what it leaves may be noise
+PART = " (part {})"  # after the name of an experiment
 WORDS = (
     "Whole runs of the simulator err for seconds at a time, so that {:.0f} samples of them count as independent. So "
     "models were weighed by parts of {:g} s, each from the motion measured at its beginning; held-out errors are those "
@@ -38,11 +39,18 @@ def in_windows(dataset: Dataset, search: Search) -> tuple[Dataset, str] | None:
     return replace(dataset, experiments=parts), WORDS.format(count, WINDOW)
 
 
+def is_of(part: str, experiment: str) -> bool:
+    """Whether `part` names the experiment or a part of it."""
+    return part == experiment or part.partition(PART.partition("{")[0])[0] == experiment
+
+
 def _parts(experiment: Experiment) -> Iterator[Experiment]:
     """The experiment in parts of about `WINDOW`; samples between two belong to both. What was stated of the beginning
-    holds in the first part alone."""
+    holds in the first part alone. Parts repeat nothing: each is another piece of the motion."""
     num = min(max(1, round(experiment.duration / WINDOW)), max(1, len(experiment.data) // (2 * FEWEST)))
     ends = np.linspace(0, len(experiment.data) - 1, num + 1).astype(int)
     for k, (first, last) in enumerate(pairwise(ends)):
-        name, initial = f"{experiment.name} (part {k + 1})", experiment.initial if k == 0 else {}
-        yield replace(experiment, name=name, data=experiment.data.iloc[first : last + 1], initial=initial)
+        part = replace(
+            experiment, name=f"{experiment.name}{PART.format(k + 1)}", data=experiment.data.iloc[first : last + 1]
+        )
+        yield replace(part, initial=experiment.initial if k == 0 else {}, repeat=None)

@@ -43,9 +43,10 @@ def _is_refuted(search: Search) -> bool:
     is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * gained
     if not case.test or (is_first and is_believed):
         return False
+    models = [heldout.models(case, m, case.test) for m in pair]
     try:
-        before, after = (heldout.replay(case, heldout.models(case, m, case.test), case.test) for m in pair)
-    except NumericalError:  # the answer leaves out what one of the models cannot simulate
+        (before, after), judged, _ = heldout.replay_all(case, models, case.test)
+    except NumericalError:  # both models simulate none of them
         return False
     floor = fitter.floor.reached_by(heldout.rms(after))
     share = heldout.explained(before, after, floor)
@@ -54,9 +55,9 @@ def _is_refuted(search: Search) -> bool:
         return True
     if is_believed:
         return False
-    gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, case.test)
+    gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, judged)
     if fitter.floor.repeated:
-        foretold = CARRIED * gained * len(case.test) / len(case.train)
+        foretold = CARRIED * gained * len(judged) / len(case.train)
         return gain["mean"] < max(0.0, min(SURE * gain["se"], foretold))
     return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
 

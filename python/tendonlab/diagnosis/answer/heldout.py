@@ -1,4 +1,4 @@
-"""How far: the gap on experiments that nothing was fitted to or chosen by, before and after."""
+"""How far: the gap on experiments that no model was fitted to, before and after. They may only refute an effect."""
 
 from __future__ import annotations
 

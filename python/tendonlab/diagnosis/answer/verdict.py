@@ -34,14 +34,15 @@ EXPLAINED = 0.75  # share of the held-out excess that library effects must remov
 EXPLAINED_OF_ASSUMED = 0.6  # the same where the floor is assumed: slow noise of a sensor lies above it
 EXPLAINED_FAR = 0.85  # the same where they leave twice `FAR`: right effects removed 0.884 and more there
 WELL_KNOWN = 2.5  # by how much less that share scatters there
+AT_FLOOR = 1.06  # whitened, of training experiments: below, EXPLAINED_OF_ASSUMED is enough; repeats tell not all
 STRAINED = 8.0  # stated sd from which on tuning a parameter is not believed: 92 rigs that lack nothing needed 6 at most
-AT_FLOOR = 1.06  # whitened, of training experiments: below, that share is enough; repeats of one motion tell not all
+STRAINED_BESIDE = 20.0  # the same beside effects: four of 154 were strained further, and wrong or but a part
+STEEP = 5.0  # how fast strained beliefs turn the verdict
 PARTLY = 0.2  # probability that an effect is there that repeats establish and that leaves something unknown: 6 of 27
 LARGELY = 0.5  # the same where it removes `MOST` of the held-out excess: 5 of 8; or the floor is assumed: 12 of 25
 MOST = 0.7
-SOFT, SAME_GROUP = 0.05, 0.2
-STRAINED_BESIDE = 20.0  # the same beside effects: four of 154 were strained further, and wrong or but a part
-STEEP = 5.0  # how fast strained beliefs turn the verdict
+SOFT = 0.05  # by how much a condition is met or missed where its probability is 0.73 or 0.27
+SAME_GROUP = 0.2  # of the probability of the selected effect, from which on another one cannot be told from it
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import Floor
 from tendonlab.report.diagnosis import WhereMap
 from tendonlab.report.words import port_words
-from tendonlab.simulation.catalog import PortInfo, unit
+from tendonlab.simulation.catalog import PORT_QUANTITIES, PortInfo, unit
 
 NUM_BINS, NUM_SHIFTS = 8, 400
 COORDINATES = ("velocity", "position", "load")
@@ -61,7 +61,7 @@ class PortRecords:
     def coordinate(self, port: str, quantity: str) -> np.ndarray:
         """Samples of one quantity at one port."""
         names = [p.name for p in self.case.system.info.ports]
-        return np.asarray(self.ports[names.index(port), ("velocity", "position", "load", "force").index(quantity)])
+        return np.asarray(self.ports[names.index(port), PORT_QUANTITIES.index(quantity)])
 
 
 def excess(case: Case, of: Replayed, floor: Floor) -> np.ndarray:
@@ -87,7 +87,8 @@ def regimes(case: Case, of: Replayed, floor: Floor, records: PortRecords) -> lis
             x = records.coordinate(port.name, quantity)
             if np.ptp(x) > 0:
                 rows.append(_regime(f"{port.name}_{quantity}", x, e, shifts))
-    rows.append(_regime("time", records.time, e, shifts))
+    if not case.system.info.steady:  # the order of steady points means nothing
+        rows.append(_regime("time", records.time, e, shifts))
     return sorted(rows, key=lambda r: (r["p_value"], -r["share"]))[:6]
 
 

@@ -39,7 +39,7 @@ from tendonlab.fitting.problem import Fitter
 
 NUM_REFIT, NUM_REFIT_FURTHER = 8, 4  # candidates refitted for the first effect, and for each further one
 NUM_REMEMBERED = 2  # of those that gained beside the last winner, in the next contest
-NUM_HIDDEN = 4  # best candidates at believed values that are refitted as well
+NUM_HIDDEN = 4  # best candidates at believed values, or of those that gave way, that are refitted as well
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none was ahead by less than 0.04 of that
 # Where laws have a shape: the others, where right, were behind by 1.7 nats at most, 192 times.
@@ -111,7 +111,7 @@ def next_effect(
     if not screened:
         return None
     bar = bar_for_further_effect(fitter) if further else DETECT
-    chosen = _promising(screened, bar)[: NUM_REFIT_FURTHER if further else NUM_REFIT]
+    chosen = promising(screened, bar)[: NUM_REFIT_FURTHER if further else NUM_REFIT]
     if strained(fitter, base):  # a candidate that cannot be simulated at tuned values may well be at nominal ones
         chosen += [s for s in screened if not s.simulated]
         chosen = _with_hidden(fitter, base, chosen, bar, shop)
@@ -137,7 +137,8 @@ def next_effect(
     return Round.of(base, screened, trials, established=established, bar=bar, accepted=leader, failed=failed)
 
 
-def _promising(screened: Sequence[Screened], bar: Bar) -> list[Screened]:
+def promising(screened: Sequence[Screened], bar: Bar) -> list[Screened]:
+    """The candidates of which a fit may pass the bar."""
     return [s for s in screened if s.gain > MIN_SCREEN_GAIN * bar.evidence]
 
 
@@ -158,7 +159,7 @@ def _others(screened: Sequence[Screened], chosen: Sequence[Screened], bar: Bar) 
     """The most promising of those that gave way to others: beside two missing effects a screen promises little of
     either."""
     taken = {s.effect for s in chosen}
-    return [s for s in _promising(screened, bar) if s.effect not in taken][:NUM_HIDDEN]
+    return [s for s in promising(screened, bar) if s.effect not in taken][:NUM_HIDDEN]
 
 
 def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar, shop: Workshop) -> list[Screened]:
@@ -169,7 +170,7 @@ def _with_hidden(fitter: Fitter, base: Fitted, chosen: list[Screened], bar: Bar,
     except (NumericalError, ParameterError):  # the misfit there may be beyond all numbers
         return chosen
     believed = shop.screen_all(*there, "believed values")
-    best = _promising(believed, bar)[:NUM_HIDDEN]
+    best = promising(believed, bar)[:NUM_HIDDEN]
     hidden = [s for s in best if s.effect not in {c.effect for c in chosen}]
     return _behind([*chosen[: max(len(chosen) - len(hidden), NUM_HIDDEN)], *hidden], believed)
 

@@ -23,8 +23,6 @@ STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which 
 EXPLODED = "the derivatives of every fit are too large to tell anything"
 MOST = 700.0  # logarithm of the largest ratio of costs: far behind is behind
 
-Values = Mapping[str, Mapping[str, float]]  # of the parameters of effects, by effect
-
 
 def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> Fitted:
     """The best fit of `base` with the candidate over its starts, settled unless it lies far behind.
@@ -38,7 +36,7 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
     def attempt(start: Mapping[str, float], *, from_nominal: bool = False) -> None:
         nonlocal best, to_settle, trouble
         try:
-            found, whole = _fit(fitter, base, {candidate.effect: start}, best, pace=pace, from_nominal=from_nominal)
+            found, whole = _fit(fitter, base, candidate.effect, start, best, pace=pace, from_nominal=from_nominal)
             better = more_evident(best, found)
             to_settle = to_settle if better is best else whole
             best = better
@@ -89,25 +87,25 @@ def restarted(fitter: Fitter, base: Fitted, leader: Fitted, fit: Fitted) -> Fitt
 def _fit(
     fitter: Fitter,
     base: Fitted,
-    effect: Values,
+    effect: str,
+    start: Mapping[str, float],
     best: Fitted | None,
     *,
     pace: float,
     from_nominal: bool = False,
 ) -> tuple[Fitted, Fitted | None]:
-    """`base` refitted with `effect`: what the fit is worth under the noise that it leaves, and the fit itself, which is
-    None where it is only a sketch: far behind the rival or `best`.
+    """`base` refitted with `effect`, whose parameters begin at `start`: what the fit is worth under the noise that it
+    leaves, and the fit itself, which is None where it is only a sketch: far behind the rival or `best`.
 
     `from_nominal`: start at the nominal values of the simulator instead of the tuned ones. Raises NumericalError or
     ParameterError where that fails."""
-    added = (*base.added, *effect)
+    added = (*base.added, effect)
     needed = _needed(base, best, pace)
     goal = _goal(fitter, base, needed)
     if from_nominal:
-        system, initial = _annealed(fitter, base, extended(base.system, effect), added)
+        system, initial = _annealed(fitter, base, extended(base.system, {effect: start}), added)
     else:
-        ((name, values),) = effect.items()
-        system, initial = followed(fitter, base, name, values)
+        system, initial = followed(fitter, base, effect, start)
     fit = fitter.fit(system, added=added, initial=initial, max_iterations=MAX_ITERATIONS, goal=goal, goal_within=SKETCH)
     worth = fitter.releveled(fit)
     if fit.cost <= goal:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from tendonlab.diagnosis.search.contest import MIN_SCREEN_GAIN, Round, next_effect
+from tendonlab.diagnosis.search.contest import Round, next_effect, promising
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
 from tendonlab.diagnosis.search.swap import extended
@@ -106,8 +106,8 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     label = f"instead of {effect}"
     under = fitter.left_by(others)
     screened = [] if others.exploded else shop.screen_all(under, others, label)  # nothing follows from such slopes
-    promising = [s for s in screened if s.effect != effect and s.gain > MIN_SCREEN_GAIN * DETECT.evidence]
-    refitted = shop.refit_all(under, others, promising[:NUM_RIVALS], label, least=DETECT.evidence, incumbent=holder)
+    rivals = [s for s in promising(screened, DETECT) if s.effect != effect][:NUM_RIVALS]
+    refitted = shop.refit_all(under, others, rivals, label, least=DETECT.evidence, incumbent=holder)
 
     def no_further_than_it_foretells(t: Trial) -> Trial:
         in_doubt = _clearly_better(t, holder) and not predicts_better(fitter, base, t.fitted)

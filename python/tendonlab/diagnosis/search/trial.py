@@ -28,10 +28,9 @@ HIDDEN = 100.0  # nats by which a weak effect must show behind another one: erro
 @dataclass(frozen=True)
 class Trial:
     """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain, `lost`
-    what experiments that are foretold worse lose, as a share of what the others gain, `relieved` what the beliefs gain:
-    they count as one more experiment, where they suit the model better; `is_nothing`: whether the effect may be 0 by
-    its own interval although it gains; `has_shape`: whether its law may have another form on the rig, as friction has
-    and a bias or a delay has not."""
+    what experiments that are foretold worse lose, as a share of what the others gain; `is_nothing`: whether the effect
+    may be 0 by its own interval although it gains; `has_shape`: whether its law may have another form on the rig, as
+    friction has and a bias or a delay has not."""
 
     effect: str
     fitted: Fitted
@@ -39,13 +38,13 @@ class Trial:
     left_out_gain: float
     doubt: float
     lost: float = 0.0
-    relieved: float = 0.0
     is_nothing: bool = False
     has_shape: bool = True
 
     @classmethod
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
-        """What `fitted`, which has `effect`, gains over `base`, which has not; rows count as in `fitted`."""
+        """What `fitted`, which has `effect`, gains over `base`, which has not; rows count as in `fitted`. Beliefs that
+        suit it better count as one more experiment."""
         base = base.counted(fitted.shares)
         with np.errstate(invalid="ignore"):  # infinity less infinity
             gains = fitted.by_experiment(_bounded(fitted.left_out - base.left_out))
@@ -55,7 +54,7 @@ class Trial:
         lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
         nothing = evidence > DETECT.evidence and is_nothing(effect, fitted)
         left_out, shape = float(np.sum(gains)), has_shape(effect, fitted.system.info)
-        return cls(effect, fitted, evidence, left_out, doubt(gains), lost, relieved, nothing, shape)
+        return cls(effect, fitted, evidence, left_out, doubt(gains), lost, nothing, shape)
 
     @property
     def num_parameters(self) -> int:
@@ -88,11 +87,11 @@ def is_nothing(effect: str, fitted: Fitted) -> bool:
 def relief(base: Fitted, extended: Fitted) -> float:
     """Nats by which what is believed of the parameters of `base` suits the `extended` model better."""
 
-    def strain(model: Fitted) -> float:
+    def disbelief(model: Fitted) -> float:
         values = dict(zip((f.name for f in model.free), model.x, strict=True))
         return 0.5 * float(sum(((values[f.name] - f.mean) / f.sd) ** 2 for f in base.free if f.name in values))
 
-    return strain(base) - strain(extended)
+    return disbelief(base) - disbelief(extended)
 
 
 def restores_belief(case: Case, base: Fitted, extended: Fitted) -> bool:

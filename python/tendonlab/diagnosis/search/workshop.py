@@ -78,13 +78,14 @@ class Workshop:
         least: float,
         incumbent: Trial | None = None,
     ) -> Refitted:
-        """The chosen candidates refitted. The first sets the pace for the others, unless there is an
-        `incumbent`: a trial that is fitted already. Those that stay far below a gain of `least` nats are sketched."""
+        """The chosen candidates refitted. The first sets the pace for the others, unless there is an `incumbent`: the
+        trial of another effect that is fitted already. Those that stay far below a gain of `least` nats are sketched.
+        """
         pace = base.counted().evidence + least
         first = incumbent or (_tried(fitter, base, chosen[0], pace=pace) if chosen else None)
         if isinstance(first, Trial):
             pace = max(pace, first.fitted.counted().evidence)
-        rest = [s for s in chosen if s.effect != incumbent.effect] if incumbent else chosen[1:]
+        rest = chosen if incumbent else chosen[1:]
         far = FAR_BEHIND * (pace - base.counted().evidence)
         rest = [_promising_after_all(s) if s.far_behind and s.gain >= far else s for s in rest]
         work = self.pool.map(lambda candidate: _tried(fitter, base, candidate, pace=pace), rest)
