@@ -67,7 +67,7 @@ def test_probabilities_are_true_under_the_fitted_map_on_other_cases() -> None:
         assert after[of]["reliability slope"] == pytest.approx(1.0, abs=0.2)
 
 
-def test_a_share_of_cases_that_nothing_foretells_is_a_lapse() -> None:
+def test_a_share_of_cases_that_nothing_predicts_is_a_lapse() -> None:
     assert fitted(cases(3000, sharpness=1.0, lapse=0.2)).verdicts.lapse == pytest.approx(0.2, abs=0.06)
 
 

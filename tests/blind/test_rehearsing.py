@@ -1,4 +1,4 @@
-"""What a rehearsal foretells of drawn rigs, beside what becomes of them: with a made-up rehearsal and diagnosis."""
+"""What a rehearsal predicts of drawn rigs, beside what becomes of them: with a made-up rehearsal and diagnosis."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def test_effects_are_compared_by_one_parameter_that_both_have(folders: tuple[Pat
 
 
 def test_predicted_and_realised_shares(folders: tuple[Path, Path]) -> None:
-    """Half is foretold, by symmetry of the counts; half is found, all offsets and no bristle."""
+    """Half is predicted, by symmetry of the counts; half is found, all offsets and no bristle."""
     result = compare([folders])
     (pooled,) = result.pooled.to_dict(orient="records")
     assert (pooled["rehearsed"], pooled["realised"], pooled["realised %"]) == ("16 of 32", "2 of 4", 50.0)

@@ -169,7 +169,7 @@ def test_lags_of_a_late_run_mend_an_equation(own: list[list[float]], mended: lis
 
 
 def test_what_ripples_with_the_angle_in_all_experiments_is_no_lag_of_one() -> None:
-    """A map learnt from the others foretells the torque of a cogging motor, not that of a late run."""
+    """A map learnt from the others predicts the torque of a cogging motor, not that of a late run."""
     rng, run = np.random.default_rng(4), np.repeat([0, 1, 2, 3], 2000)
     angle = np.concatenate([rng.uniform(-9.0, 9.0, 6000), np.linspace(0.0, 6.0, 2000)])
     equation: Any = SimpleNamespace(moved=("a",))

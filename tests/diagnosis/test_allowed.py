@@ -13,7 +13,7 @@ from tendonlab.fitting.noise import white
 
 
 def again(case: Any, fitted: Fitted, ready: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Rms errors of a held-out experiment that is measured so: as the model foretells, and as it allows."""
+    """Rms errors of a held-out experiment that is measured so: as the model predicts, and as it allows."""
     i = case.test[0]
     case = replace(case, prepared=tuple(ready if k == i else old for k, old in enumerate(case.prepared)))
     start = tuple(case.prepared[i].initial_mean)
@@ -32,7 +32,7 @@ def test_friction_that_differs_as_it_may_is_no_gap(known: Any) -> None:
 
 
 def test_what_suits_best_and_is_improbable_is_not_allowed(known: Any) -> None:
-    """Friction 20 times its sd higher suits the run, and the model stays as foretold."""
+    """Friction 20 times its sd higher suits the run, and the model stays as predicted."""
     case, fitted = known
     before, after = again(case, fitted, measured_as(case, case.test[0], 20.0 * SCATTER))
     assert np.array_equal(before, after, equal_nan=True)

@@ -209,21 +209,21 @@ def test_only_what_is_refuted_is_dropped_the_last_effect_first(
 def test_repeats_establish_what_is_sure_to_help_held_out_experiments(
     found: Callable[..., Search], shop: Callable[..., Any], gain: float, kept: bool
 ) -> None:
-    """100 nats of the training experiments foretell more than two standard errors."""
+    """100 nats of the training experiments predict more than two standard errors."""
     assert bool(confirm.confirmed(found(FIRST, repeated=True), shop(10.0, 10.0, gain=gain)).selected) is kept
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.11, True), (0.09, False)])
-def test_repeats_establish_what_brings_a_tenth_of_what_was_foretold(
+def test_repeats_establish_what_brings_a_tenth_of_what_was_predicted(
     found: Callable[..., Search], shop: Callable[..., Any], share: float, kept: bool
 ) -> None:
     search = found(FIRST, repeated=True)
     case = search.fitter.case
-    foretold = 5.0 * len(case.test) / len(case.train)
+    predicted = 5.0 * len(case.test) / len(case.train)
     (won,) = search.rounds
     assert won.accepted is not None
     weak = replace(search, rounds=(replace(won, accepted=replace(won.accepted, left_out_gain=5.0)),))
-    assert bool(confirm.confirmed(weak, shop(10.0, 10.0, gain=share * foretold)).selected) is kept
+    assert bool(confirm.confirmed(weak, shop(10.0, 10.0, gain=share * predicted)).selected) is kept
 
 
 def test_a_refuted_effect_ranks_behind_none(found: Callable[..., Search]) -> None:

@@ -1,4 +1,4 @@
-"""Whether residuals follow the motion: maps learnt from other experiments foretell them, or they do not."""
+"""Whether residuals follow the motion: maps learnt from other experiments predict them, or they do not."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def slow(q: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("form", [lambda q, v: np.exp(-(((q - 0.4) / 0.2) ** 2)), lambda q, v: np.sign(v) * q])
-def test_what_depends_on_position_and_direction_is_foretold(form: Any) -> None:
-    """Half of the mean square is noise: the maps foretell the other half."""
+def test_what_depends_on_position_and_direction_is_predicted(form: Any) -> None:
+    """Half of the mean square is noise: the maps predict the other half."""
 
     def left(q: np.ndarray, v: np.ndarray, _: int) -> np.ndarray:
         own = form(q, v)
@@ -63,7 +63,7 @@ def test_what_depends_on_position_and_direction_is_foretold(form: Any) -> None:
     assert not may_be_noise(case(left), MODEL)
 
 
-def test_friction_that_drifts_alike_in_every_run_is_foretold() -> None:
+def test_friction_that_drifts_alike_in_every_run_is_predicted() -> None:
     def left(q: np.ndarray, v: np.ndarray, _: int) -> np.ndarray:
         own = np.sign(v) * np.exp(-TIME / 4.0)
         own -= np.sign(v) * np.mean(np.exp(-TIME / 4.0))  # what a fit has left
@@ -112,7 +112,7 @@ def test_how_runs_begin_is_no_drift() -> None:
 
 
 @pytest.mark.parametrize("left", [lambda q, v, k: noise(q), lambda q, v, k: slow(q), lambda q, v, k: (-1.0) ** k * q])
-def test_noise_is_not_foretold(left: Any) -> None:
+def test_noise_is_not_predicted(left: Any) -> None:
     """White, slow, or in each experiment of another sign."""
     rig = case(left)
     assert patterns(rig, MODEL).ringing < RINGS

@@ -53,7 +53,7 @@ def test_the_experiment_separates_what_the_error_follows_from_what_it_may_follow
     assert list(found[0]["reference"].columns) == ["t", "u", "w (deg/s)"]
 
 
-def test_where_no_map_foretells_anything_the_experiment_covers_what_was_seen_least(fitter: Fitter) -> None:
+def test_where_no_map_predicts_anything_the_experiment_covers_what_was_seen_least(fitter: Fitter) -> None:
     case = fitter.case
     (row,) = advise_unknown(case, case.replay, fitter.fit(case.system, solve=False))
     assert row["separates"] == []

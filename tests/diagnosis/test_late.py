@@ -8,14 +8,14 @@ import pytest
 
 from tendonlab.checking.finding import Check, Finding
 from tendonlab.diagnosis import late
-from tendonlab.diagnosis.late import FORETOLD, checked_again
+from tendonlab.diagnosis.late import PREDICTED, checked_again
 
 CLEAN = Check(dataset="rig", findings=())
 LATE = Finding(problem="clock", detail="slow is late", experiment="slow", blocks=True, seconds=0.04)
 
 
 @pytest.mark.parametrize("names", [("fast", "slow"), ("fast", "slow (part 1)", "slow (part 2)")])
-@pytest.mark.parametrize(("left", "is_late"), [(0.9 * FORETOLD, False), (1.1 * FORETOLD, True)])
+@pytest.mark.parametrize(("left", "is_late"), [(0.9 * PREDICTED, False), (1.1 * PREDICTED, True)])
 def test_a_run_or_all_its_parts_are_replayed_to_see_whether_it_is_late(
     names: tuple[str, ...], left: float, is_late: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -118,12 +118,12 @@ def test_an_error_that_is_no_noise_is_explained() -> None:
     assert "friction that differs by 5 % from run to run" in differs
 
 
-def test_experiments_that_the_verdict_counts_otherwise_than_foretold_are_named(twin_case: Any) -> None:
+def test_experiments_that_the_verdict_counts_otherwise_than_predicted_are_named(twin_case: Any) -> None:
     floor: Any = SimpleNamespace(rms=np.array([1.0, np.nan, np.nan]))
     told = [np.full((3, 5), size) for size in (3.0, 2.0)]
-    foretold, near = (SimpleNamespace(residuals=rows) for rows in (told, [told[0], np.full((3, 5), 1.0)]))
-    (warning,) = notes.allowed_more(twin_case, foretold, near, floor, twin_case.test[:2])  # type: ignore[arg-type]
+    predicted, near = (SimpleNamespace(residuals=rows) for rows in (told, [told[0], np.full((3, 5), 1.0)]))
+    (warning,) = notes.allowed_more(twin_case, predicted, near, floor, twin_case.test[:2])  # type: ignore[arg-type]
     assert twin_case.experiments[twin_case.test[1]].name in warning
     assert "a gap of 1.7 noise floors. Within the uncertainty of the fit the gap can be 0" in warning
     as_much = SimpleNamespace(residuals=[row - 1e-3 for row in told])  # less, but told as the same numbers
-    assert notes.allowed_more(twin_case, foretold, as_much, floor, twin_case.test[:2]) == []  # type: ignore[arg-type]
+    assert notes.allowed_more(twin_case, predicted, as_much, floor, twin_case.test[:2]) == []  # type: ignore[arg-type]

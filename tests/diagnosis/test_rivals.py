@@ -186,14 +186,14 @@ def test_a_place_is_contested_anew_where_the_others_had_ended_in_a_wrong_optimum
     assert all((place.holder.evidence_gain == gain) == is_new for place in found)
 
 
-@pytest.mark.parametrize("foretells", [True, False])
-def test_a_lead_that_foretells_nothing_better_makes_a_tie(
-    foretells: bool, trial: Callable[..., Trial], nominal: Fitted, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("predicts", [True, False])
+def test_a_lead_that_predicts_nothing_better_makes_a_tie(
+    predicts: bool, trial: Callable[..., Trial], nominal: Fitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not, as before, a rival without a chance."""
     monkeypatch.setattr(rivals, "refitted_without", lambda *args: nominal)
     monkeypatch.setattr(rivals.Trial, "of", classmethod(lambda cls, effect, *models: trial(effect, 100.0)))
-    monkeypatch.setattr(rivals, "predicts_better", lambda *args: foretells)
+    monkeypatch.setattr(rivals, "predicts_better", lambda *args: predicts)
     shop: Any = SimpleNamespace(
         screen_all=lambda *args: [],
         refit_all=lambda *args, incumbent, **kw: Refitted([trial(DELAY, 180.0), incumbent], {}),
@@ -202,8 +202,8 @@ def test_a_lead_that_foretells_nothing_better_makes_a_tie(
     (place,) = rivals.contest_each_place(fitter, replace(nominal, added=(STRIBECK,)), {}, shop)
     rival = place.rival()
     assert rival is not None
-    assert rival.evidence_gain == (180.0 if foretells else 100.0)
-    assert place.round.probability[DELAY] == pytest.approx(1.0 if foretells else 0.5, abs=0.01)
+    assert rival.evidence_gain == (180.0 if predicts else 100.0)
+    assert place.round.probability[DELAY] == pytest.approx(1.0 if predicts else 0.5, abs=0.01)
 
 
 @pytest.mark.parametrize(
@@ -266,7 +266,7 @@ def test_progress_says_for_which_effect_candidates_are_screened(
     assert labels == ["effect", "effect 2", "effect 3"]
 
 
-def test_a_trial_that_is_fitted_already_contests_and_none_of_its_rivals_sets_the_pace(
+def test_a_trial_that_is_fitted_already_contests_without_a_fit(
     trial: Callable[..., Trial], fitter: Fitter, nominal: Fitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tried = []

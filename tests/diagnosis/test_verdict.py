@@ -338,10 +338,10 @@ def test_an_effect_that_was_established_near_the_floor_is_a_gap() -> None:
     assert found.probability["effect"] > found.probability["no_gap"]
 
 
-def test_tuning_gains_what_it_foretells_not_what_its_uncertainty_allows() -> None:
-    levels = Levels(nominal=1.2, tuned=1.0, refitted=0.9, explained=None, left=0.9, repeated=False, foretold=1.19)
+def test_tuning_gains_what_it_predicts_not_what_its_uncertainty_allows() -> None:
+    levels = Levels(nominal=1.2, tuned=1.0, refitted=0.9, explained=None, left=0.9, repeated=False, predicted=1.19)
     assert decide((), (), levels).verdict == "no_gap"
-    assert decide((), (), replace(levels, foretold=None)).verdict == "parameters_only"
+    assert decide((), (), replace(levels, predicted=None)).verdict == "parameters_only"
 
 
 def test_a_simulator_at_the_floor_has_no_gap() -> None:

@@ -107,7 +107,7 @@ def test_a_late_experiment_that_an_effect_hides_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.cpu(120)
-def test_an_experiment_that_the_final_model_foretells_is_not_late(tmp_path: Path, monkeypatch) -> None:
+def test_an_experiment_that_the_final_model_predicts_is_not_late(tmp_path: Path, monkeypatch) -> None:
     """The equation may say so: of a servo's target, its steps look late to it once a deadband is known."""
     rig = write(tmp_path, RIG.with_effects({"joint:load_dependence": {"load_dependence": 0.2}}), seed=3)
     said = Finding(problem="clock", experiment="slow", seconds=0.03, blocks=True, detail="late")

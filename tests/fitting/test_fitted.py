@@ -36,18 +36,18 @@ def test_leaving_out_by_a_newton_step_is_near_a_fit_without_it(fitter: Fitter, t
 
 
 @pytest.mark.cpu(15)
-def test_a_left_out_block_is_foretold_with_the_uncertainty_of_the_others(fitter: Fitter, twin_case: Any) -> None:
+def test_a_left_out_block_is_predicted_with_the_uncertainty_of_the_others(fitter: Fitter, twin_case: Any) -> None:
     """A normal density about the step's prediction, its covariance 1 + J C J', where C is that without the block."""
     fit = replace(fitter, case=twin_case.training_on(twin_case.train[:2])).fit(twin_case.system, max_iterations=5)
     b = max(range(len(fit.blocks)), key=lambda k: fit.scores[k] - fit.left_out[k])
     block = fit.blocks[b]
     others = fit.precision - block.jacobian.T @ block.jacobian
     step = np.linalg.solve(others, block.jacobian.T @ block.residual)
-    foretold = block.residual + block.jacobian @ step
-    covariance = np.eye(len(foretold)) + block.jacobian @ np.linalg.solve(others, block.jacobian.T)
+    predicted = block.residual + block.jacobian @ step
+    covariance = np.eye(len(predicted)) + block.jacobian @ np.linalg.solve(others, block.jacobian.T)
     plain = fit.scores[b] + 0.5 * block.residual @ block.residual
     _, volume = np.linalg.slogdet(covariance)
-    density = plain - 0.5 * (foretold @ np.linalg.solve(covariance, foretold) + volume)
+    density = plain - 0.5 * (predicted @ np.linalg.solve(covariance, predicted) + volume)
     assert volume > 1.0
     assert fit.left_out[b] == pytest.approx(density, rel=1e-5)
 

@@ -94,8 +94,8 @@ def _design(truths: Path, folder: Path) -> list[dict[str, Any]]:
         report = report_of(folder / REPORTS, case, reported.get(case, {"verdict": FAILED}))
         answer = FAILED if report["verdict"] == FAILED else judged(answer_of(report), effect)["outcome"]
         draw = {name: truth["draw"][name] for name in ("system", "sample_time", "repeats", "gap_noise")}
-        foretold = _foretold(entries[effect], abs(truth["truth"][entries[effect]["parameter"]]))
-        rows.append({"case": case, "effect": effect, **draw, **foretold, "outcome": answer})
+        predicted = _predicted(entries[effect], abs(truth["truth"][entries[effect]["parameter"]]))
+        rows.append({"case": case, "effect": effect, **draw, **predicted, "outcome": answer})
     return [{**row, "found": row["outcome"] in HITS} for row in rows]
 
 
@@ -107,7 +107,7 @@ def answer_of(report: Mapping[str, Any]) -> Diagnosis:
     return Diagnosis(**{name: report[name] for name in needed} | {"effects": effects})
 
 
-def _foretold(entry: Mapping[str, Any], amount: float) -> dict[str, Any]:
+def _predicted(entry: Mapping[str, Any], amount: float) -> dict[str, Any]:
     """What the rehearsal says of an effect at an `amount` of its size parameter: the gap over noise that it gives it,
     the probability on its detection curve there, and its counts at the nearest size."""
     gaps, amounts, found, tried = (

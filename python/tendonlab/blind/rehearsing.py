@@ -1,5 +1,5 @@
 """Rehearse drawn rigs that lack nothing, then record and diagnose the same rigs with effects missing: the generator's
-rigs are the real ones, of which the rehearsal foretells what would be found.
+rigs are the real ones, of which the rehearsal predicts what would be found.
 """
 
 from __future__ import annotations
@@ -143,11 +143,11 @@ def _keep(designs: Designs, out: Path) -> None:
 def _recorded(designs: Designs, index: int, folder: Path, truths: Path, *, minutes: float) -> str:
     """Rehearse a design and record its rigs; why that failed, or an empty text."""
     rig = designs.draw(index)
-    message = _foretell(designs, index, rig, folder, minutes=minutes)
+    message = _predict(designs, index, rig, folder, minutes=minutes)
     return message or _realise(designs, index, rig, folder, truths)
 
 
-def _foretell(designs: Designs, index: int, rig: Rig, folder: Path, *, minutes: float) -> str:
+def _predict(designs: Designs, index: int, rig: Rig, folder: Path, *, minutes: float) -> str:
     """Write the logs of the rig that lacks nothing and rehearse them; why that failed, or an empty text."""
     _empty(folder / RIG)
     (logs,) = record([rig], tune([replace(rig, kind="none")]), step=designs.step)

@@ -229,7 +229,7 @@ class _Tuner:
         return np.moveaxis(outputs, 2, 0).reshape(len(rigs), self.num_outputs, -1)
 
     def start(self) -> None:
-        """Readings and slopes at the true parameters, from which `linear` foretells."""
+        """Readings and slopes at the true parameters, from which `linear` predicts."""
         self.base, self.slopes = self._linearise(self.refit)
 
     def run_truth(self, amplitude: Array) -> Array:
@@ -289,7 +289,7 @@ class _Tuner:
         return np.clip(step, -1.0, 1.0)
 
     def linear(self, amplitude: Array) -> Array:
-        """gap/noise as the slopes at the true parameters foretell it."""
+        """gap/noise as the slopes at the true parameters predict it."""
         residual = self.run_truth(amplitude) - self.base
         step = self._step(residual, self.slopes, np.zeros_like(self.refit))
         self.refit = step

@@ -29,7 +29,7 @@ def dead_outputs(dataset: Dataset, system: System) -> Iterator[Finding]:
         if not rows or max(len(np.unique(row)) for row in rows) > LEVELS:
             continue
         shown = max(float(np.ptp(row)) for row in rows)
-        moved = _foretold(dataset, system, output.name)
+        moved = _predicted(dataset, system, output.name)
         if moved > FAR * shown:
             unit = unit_text(dataset.signals[output.name].si_unit)
             velocity = _moving_velocity(dataset, system)
@@ -49,7 +49,7 @@ def _records(dataset: Dataset, names: Sequence[str]) -> Iterator[tuple[str, np.n
                 yield name, row.to_numpy(dtype=float)
 
 
-def _foretold(dataset: Dataset, system: System, name: str) -> float:
+def _predicted(dataset: Dataset, system: System, name: str) -> float:
     """How far the simulator goes in the experiment where it goes farthest; 0 where it cannot be simulated."""
     farthest = 0.0
     for experiment in dataset:

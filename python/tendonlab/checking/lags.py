@@ -266,9 +266,9 @@ def _by_place(equation: Equation, logs: Logs, left: np.ndarray, experiment: int,
         cell = np.floor(logs.moving[name][0] * (CELLS / (2.0 * np.pi))).astype(int) % CELLS
         weight = np.where(here, 0.0, 1.0 / (1.0 + left[k] ** 2))
         learnt = np.bincount(cell, weight * left[k], CELLS) / np.maximum(np.bincount(cell, weight, CELLS), 1.0)
-        foretold = learnt[cell[here]]
-        if foretold @ left[k, here] > 0.0:
-            saved = max(saved, float(share[k]) * _saved(left[k, here], foretold[:, None]))
+        predicted = learnt[cell[here]]
+        if predicted @ left[k, here] > 0.0:
+            saved = max(saved, float(share[k]) * _saved(left[k, here], predicted[:, None]))
     return saved
 
 

@@ -42,7 +42,7 @@ def may_be_noise(case: Case, model: Fitted) -> bool:
 
 class Patterns(NamedTuple):
     """Largest shares of the mean square residual of an output: that which a map over the motion or the time since a run
-    began foretells (`followed`), and that of one narrow band (`ringing`) about a `frequency`, Hz."""
+    began predicts (`followed`), and that of one narrow band (`ringing`) about a `frequency`, Hz."""
 
     followed: float = 0.0
     ringing: float = 0.0
@@ -70,7 +70,7 @@ def scattered(case: Case, model: Fitted) -> float:
 
 def _followed(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: Sequence[np.ndarray]) -> float:
     """Largest share of the mean square residual of an output that a map over direction and position of a port, or over
-    its direction and the time since the run began, foretells in experiments other than those that it was learnt from; 0
+    its direction and the time since the run began, predicts in experiments other than those that it was learnt from; 0
     where maps mislead, and of a single experiment."""
     if len(runs) < 2:
         return 0.0
@@ -83,7 +83,7 @@ def _followed(case: Case, runs: Sequence[Mapping[str, np.ndarray]], residuals: S
             continue
         over_time = [] if case.system.info.steady else [_cells(velocities, times, NUM_TIMES)]
         for cells in (_cells(velocities, positions, NUM_KNOTS), *over_time):
-            shares += [foretold(cells, [r[c] for r in residuals]) for c in case.measured]
+            shares += [share_predicted(cells, [r[c] for r in residuals]) for c in case.measured]
     return max(shares)
 
 
@@ -168,8 +168,8 @@ def ridge(inner: np.ndarray) -> np.ndarray:
     return np.asarray(RIDGE * np.trace(inner) / len(inner) * np.eye(len(inner)))
 
 
-def foretold(cells: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> float:
-    """Share of the mean square of all residuals that maps learnt from all other experiments foretell."""
+def share_predicted(cells: Sequence[np.ndarray], residuals: Sequence[np.ndarray]) -> float:
+    """Share of the mean square of all residuals that maps learnt from all other experiments predict."""
     there = [np.isfinite(r) for r in residuals]
     pairs = [(a[ok], r[ok]) for a, r, ok in zip(cells, residuals, there, strict=True) if ok.any()]
     if len(pairs) < 2:

@@ -200,10 +200,10 @@ class Fitted:
     @cached_property
     def left_out(self) -> np.ndarray:
         """Predictive log score of each block when it is left out: of the values that the other blocks give by one
-        Newton step, and of how uncertain these are. A block that alone determines a value is hard to foretell."""
+        Newton step, and of how uncertain these are. A block that alone determines a value is hard to predict."""
         if self.exploded:
             return np.full(len(self.blocks), -np.inf)
-        return np.asarray(-0.5 * (self._foretold() + np.array(self._spreads)))
+        return np.asarray(-0.5 * (self._predicted() + np.array(self._spreads)))
 
     @property
     def scores(self) -> np.ndarray:
@@ -211,7 +211,7 @@ class Fitted:
         misfit = np.array([float(b.residual @ b.residual) for b in self.blocks])
         return np.asarray(-0.5 * (misfit + np.array(self._spreads)))
 
-    def _foretold(self) -> np.ndarray:
+    def _predicted(self) -> np.ndarray:
         """Of each block: minus twice the logarithm of the normal density of its rows under the fit to the others, whose
         covariance is 1 + J C J', with C that of the coordinates there. Only J'J and J'r are needed."""
         slopes = [b.jacobian[:, self._moving] for b in self.blocks]

@@ -1,6 +1,6 @@
 """The noise floor: what repeats of an experiment do not repeat (docs/method.md).
 
-Rounding to coarse steps may repeat, yet no model foretells it: no output's floor is below that of rounding.
+Rounding to coarse steps may repeat, yet no model predicts it: no output's floor is below that of rounding.
 
 Repeats are compared through the residuals of the same model. What a slightly different friction from run to run
 explains is a random effect of its own; the rest is coloured noise, whitened by an autoregression. Without repeats

@@ -40,7 +40,7 @@ def noise_of_points(points: Sequence[Points]) -> float:
 
     Points at equal inputs tell it, within one experiment: friction differs from run to run. Without them the lesser of
     two that overstate it: points at equal inputs of different experiments, and what neighbours in one input, the others
-    equal, do not foretell of a point between them. 0 where nothing tells it."""
+    equal, do not predict of a point between them. 0 where nothing tells it."""
     rounding = max(map(_rounding, points))
     shown = _of_replicates(points)
     if shown is not None and max(shown, rounding) > 0.0:  # else all of them are copies
@@ -61,7 +61,7 @@ def _of_replicates(points: Sequence[Points]) -> float | None:
 
 
 def _of_neighbours(points: Sequence[Points], *, fewest: int = ENOUGH) -> float:
-    """Sd of what neighbours do not foretell of a point, by the number of neighbours that leaves least: fewer pass over
+    """Sd of what neighbours do not predict of a point, by the number of neighbours that leaves least: fewer pass over
     less, and more follow a curve. 0 where there are too few points."""
     found = []
     for order in ORDERS:

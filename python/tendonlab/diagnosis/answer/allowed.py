@@ -35,13 +35,13 @@ def allowed(
 
 
 def _allowed(case: Case, fitted: Fitted, floor: Floor, of: Replayed, experiments: Sequence[int]) -> Replayed:
-    as_foretold = zip(of.systems, of.initial, of.residuals, of.outputs, strict=True)
-    rows = [_nearest(case, fitted, floor, i, row) for i, row in zip(experiments, as_foretold, strict=True)]
+    as_predicted = zip(of.systems, of.initial, of.residuals, of.outputs, strict=True)
+    rows = [_nearest(case, fitted, floor, i, row) for i, row in zip(experiments, as_predicted, strict=True)]
     return Replayed(*(tuple(part) for part in zip(*rows, strict=True)))
 
 
 def _nearest(case: Case, fitted: Fitted, floor: Floor, i: int, row: Row) -> Row:
-    """One experiment; as foretold where that is at the floor, or nothing is more probable."""
+    """One experiment; as predicted where that is at the floor, or nothing is more probable."""
     _, initial, residual, _ = row
     if not _is_off(residual, floor):
         return row

@@ -139,7 +139,7 @@ def _levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
         refitted=heldout.level(near["refitted"], floor),
-        foretold=heldout.level(stages["refitted"], floor),
+        predicted=heldout.level(stages["refitted"], floor),
         explained=heldout.explained(stages["refitted"], near["with_effect"], floor) if search.selected else None,
         left=heldout.level(near["with_effect"], floor),
         repeated=floor.repeated,

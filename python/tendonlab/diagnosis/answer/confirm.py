@@ -2,7 +2,7 @@
 
 Without repeats nothing tells what repeats from what a sensor adds. A slow error of a sensor then looks like an effect
 on the training experiments, but not on others. With repeats an effect may imitate a cause that the library lacks; where
-held-out experiments are foretold worse with that effect, the imitation fails. Repeats of one motion share what happens
+held-out experiments are predicted worse with that effect, the imitation fails. Repeats of one motion share what happens
 by chance; an effect that gains on them alone explains that chance.
 
 Effects of rigs have other forms than the library's. What the form of the first effect leaves, a further one may remove
@@ -34,8 +34,8 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 
 
 def _is_refuted(search: Search) -> bool:
-    """Whether held-out experiments are foretold worse with the last effect, or hardly better though the training
-    experiments foretell much; without repeats where it removes little of what the model without it leaves, and may do
+    """Whether held-out experiments are predicted worse with the last effect, or hardly better though the training
+    experiments predict much; without repeats where it removes little of what the model without it leaves, and may do
     even that by chance, or where, near the floor, an effect beside others leaves much of what they leave."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     gained, is_first = _gained(search), len(search.selected) == 1
@@ -57,8 +57,8 @@ def _is_refuted(search: Search) -> bool:
         return False
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, judged)
     if fitter.floor.repeated:
-        foretold = CARRIED * gained * len(judged) / len(case.train)
-        return gain["mean"] < max(0.0, min(SURE * gain["se"], foretold))
+        predicted = CARRIED * gained * len(judged) / len(case.train)
+        return gain["mean"] < max(0.0, min(SURE * gain["se"], predicted))
     return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
 
 

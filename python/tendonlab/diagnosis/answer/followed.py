@@ -11,7 +11,7 @@ import numpy as np
 
 from tendonlab.diagnosis.answer.next_experiments import contradiction, plans, ranked
 from tendonlab.diagnosis.answer.plan import Plan
-from tendonlab.diagnosis.discrepancy import FOLLOWED_REPEATED, NUM_KNOTS, NUM_TIMES, SLOW, Cells, foretold, ridge
+from tendonlab.diagnosis.discrepancy import FOLLOWED_REPEATED, NUM_KNOTS, NUM_TIMES, SLOW, Cells, ridge, share_predicted
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -51,7 +51,7 @@ Look = Callable[[Seen], tuple[np.ndarray, np.ndarray]]  # velocity at a port, an
 @dataclass(frozen=True)
 class Description:
     """The residual of one output as a map over `coordinate`, which regimes name so, and over the direction of motion.
-    `look`: what the map sees of a simulation. `share`: of the residual's mean square that it foretells of other
+    `look`: what the map sees of a simulation. `share`: of the residual's mean square that it predicts of other
     experiments. `weights` and `precision`: of its cells. `level`: rms of what it leaves. `counts`: share of the rows
     that count as independent."""
 
@@ -100,7 +100,7 @@ class Coverage:
 
 def advise_unknown(case: Case, driven: Replay, model: Fitted) -> list[dict[str, Any]]:
     """Experiments on a rig that `model` does not explain, best first, each with its `reference`: ranked by the nats
-    that they are expected to bring between the two best descriptions of what the model leaves. Where these foretell no
+    that they are expected to bring between the two best descriptions of what the model leaves. Where these predict no
     more than noise does, or nothing separates them, the one that tells most of a map over all coordinates together."""
     planned = plans(case, driven, rests=True)
     if not planned:
@@ -134,7 +134,7 @@ def _simulated(case: Case, model: Fitted, plan: Plan) -> Seen | None:
 
 
 def descriptions(case: Case, runs: Sequence[Seen]) -> list[Description]:
-    """Of what a model leaves of the output that it explains worst, at the port where one of them foretells most.
+    """Of what a model leaves of the output that it explains worst, at the port where one of them predicts most.
     `runs`: the training experiments as it simulates them."""
     logs = [case.prepared[i].measured for i in case.train]
     residuals = [(seen.run["outputs"] - y)[:, seen.kept] for seen, y in zip(runs, logs, strict=True)]
@@ -198,5 +198,5 @@ def _learnt(
     level = max(float(np.sqrt(np.mean(np.square(r - a @ weights)))), np.finfo(float).tiny)
     left = [(y - rows @ weights)[ok] for rows, y, ok in zip(each, residuals, kept, strict=True) if ok.any()]
     counts = 1.0 / float(np.mean([integrated_time(one) for one in left]))
-    share = foretold(each, residuals)
+    share = share_predicted(each, residuals)
     return Description(coordinate, look, cells, share, weights, precision * counts / level**2, level, counts)

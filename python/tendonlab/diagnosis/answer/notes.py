@@ -159,13 +159,13 @@ def not_asked(case: Case, search: Search, library: Sequence[str] | None) -> list
 
 def on_the_held_out(weighed: Judged, shown: Judged, near: Mapping[str, Replayed], selected: Sequence[str]) -> list[str]:
     """Warnings about single held-out experiments. `near`: the replays that the verdict counts."""
-    foretold, allowed = weighed.stages["with_effect"], near["with_effect"]
+    predicted, allowed = weighed.stages["with_effect"], near["with_effect"]
     return [
         *not_simulated(weighed.failed),
         *(not_simulated(shown.failed) if shown is not weighed else []),
         *_apart(weighed, shown),
         *not_improved(shown.per_experiment(), selected),
-        *allowed_more(weighed.case, foretold, allowed, weighed.floor, weighed.experiments),
+        *allowed_more(weighed.case, predicted, allowed, weighed.floor, weighed.experiments),
     ]
 
 
@@ -198,11 +198,13 @@ def not_improved(held_out: pd.DataFrame, selected: Sequence[str]) -> list[str]:
     ]
 
 
-def allowed_more(case: Case, foretold: Replayed, near: Replayed, floor: Floor, experiments: Sequence[int]) -> list[str]:
+def allowed_more(
+    case: Case, predicted: Replayed, near: Replayed, floor: Floor, experiments: Sequence[int]
+) -> list[str]:
     """A warning for each held-out experiment above the floor that the verdict counts by what the fit leaves open, not
-    as foretold."""
+    as predicted."""
     found = []
-    for i, before, after in zip(experiments, foretold.residuals, near.residuals, strict=True):
+    for i, before, after in zip(experiments, predicted.residuals, near.residuals, strict=True):
         gaps = [gap(row_mean_squares(of), floor.rms) for of in (before, after)]
         told, left = (f"{size:.2g}" for size in gaps)
         if gaps[1] < gaps[0] and gaps[0] > 1.0 and told != left:

@@ -51,8 +51,8 @@ class Levels:
 
     `nominal`: at the untouched simulator, whitened, or plain where nothing repeats. `tuned`: whitened, of the
     refitted simulator on the training experiments. `refitted`: plain, of the refitted simulator on held-out
-    experiments, which decides where nothing repeats; where runs do, it must not be far. `foretold`: the same as
-    the fit foretells it, not as its uncertainty allows; None where these are one. `explained`: share of the
+    experiments, which decides where nothing repeats; where runs do, it must not be far. `predicted`: the same as
+    the fit predicts it, not as its uncertainty allows; None where these are one. `explained`: share of the
     held-out excess that the selected effects remove, None where there is none. `left`: plain, of the simulator with
     them on held-out experiments; `whitened`: of it on the training experiments. `repeated`: whether the floor comes
     from repeats. `patterns`: in what the final model leaves of the training experiments. Where nothing repeats,
@@ -75,7 +75,7 @@ class Levels:
     scattered: float = 0.0
     strained: float = 0.0
     drifted: float = 1.0
-    foretold: float | None = None
+    predicted: float | None = None
     by_noise: float = 1.0
     drowned: bool = False
     relieved: bool = False
@@ -129,7 +129,7 @@ class Verdict:
 
 def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> Verdict:
     """The verdict on the effects `selected` in these `rounds`, and its probabilities."""
-    after = levels.tuned if levels.repeated else levels.refitted if levels.foretold is None else levels.foretold
+    after = levels.tuned if levels.repeated else levels.refitted if levels.predicted is None else levels.predicted
     # What tuning gains, beyond what is too little to matter; nothing where nothing is left to gain.
     gained = (1.0 - after / levels.nominal if levels.nominal > 0 else 0.0) - LOWERED
     room = _room(levels)

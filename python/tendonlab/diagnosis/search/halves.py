@@ -35,7 +35,7 @@ def predicts_better(fitter: Fitter, base: Fitted, extended: Fitted) -> bool:
 
 def _scores(fitter: Fitter, model: Fitted, *, odd: bool) -> np.ndarray:
     """Log score of each experiment on one half of its blocks, after a refit to the other half alone. That half may not
-    hold the beginning of a run: where its initial state foretells worse than that of the whole fit, the latter counts.
+    hold the beginning of a run: where its initial state predicts worse than that of the whole fit, the latter counts.
     """
     under = fitter.left_by(model)
     learning, judging = (replace(under, case=fitter.case.on_half(odd=half)) for half in (not odd, odd))

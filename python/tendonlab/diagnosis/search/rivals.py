@@ -96,7 +96,7 @@ def contest_each_place(fitter: Fitter, base: Fitted, places: Places, shop: Works
 
 def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: Place | None) -> Place:
     """The contest for one place, or the `stored` one, unless the other effects had ended in a wrong optimum: then they
-    do without this effect nearly as well, once they start where they ended with it. A rival whose lead foretells
+    do without this effect nearly as well, once they start where they ended with it. A rival whose lead predicts
     no other block better is as good as the holder, no better."""
     rest = tuple(name for name in base.added if name != effect)
     others = refitted_without(fitter, base, (effect,))
@@ -109,11 +109,11 @@ def _contest(fitter: Fitter, base: Fitted, effect: str, shop: Workshop, stored: 
     rivals = [s for s in promising(screened, DETECT) if s.effect != effect][:NUM_RIVALS]
     refitted = shop.refit_all(under, others, rivals, label, least=DETECT.evidence, incumbent=holder)
 
-    def no_further_than_it_foretells(t: Trial) -> Trial:
+    def no_further_than_it_predicts(t: Trial) -> Trial:
         in_doubt = _clearly_better(t, holder) and not predicts_better(fitter, base, t.fitted)
         return replace(t, evidence_gain=holder.evidence_gain) if in_doubt else t
 
-    trials = [no_further_than_it_foretells(t) for t in refitted.trials]
+    trials = [no_further_than_it_predicts(t) for t in refitted.trials]
     established = {t.effect for t in trials if DETECT.passed(t)}
     failed = refitted.failed
     round_ = Round.of(others, screened, trials, established=established, bar=DETECT, accepted=holder, failed=failed)

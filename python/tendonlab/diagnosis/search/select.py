@@ -135,7 +135,7 @@ def _two_deep(state: _Extended, base: Fitted, contest: Round, shop: Workshop) ->
 
 
 def _leaders(base: Fitted, trials: Sequence[Trial]) -> list[Trial]:
-    """The effects that leave least, of those that remove a part of the error and foretell left-out blocks better; one
+    """The effects that leave least, of those that remove a part of the error and predict left-out blocks better; one
     of those that leave the same."""
     most = base.mean_square - LEADS * (base.mean_square - 1.0)
     able = sorted((t for t in trials if t.left_out_gain > 0.0), key=lambda t: t.fitted.mean_square)

@@ -28,7 +28,7 @@ HIDDEN = 100.0  # nats by which a weak effect must show behind another one: erro
 @dataclass(frozen=True)
 class Trial:
     """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain, `lost`
-    what experiments that are foretold worse lose, as a share of what the others gain; `is_nothing`: whether the effect
+    what experiments that are predicted worse lose, as a share of what the others gain; `is_nothing`: whether the effect
     may be 0 by its own interval although it gains; `has_shape`: whether its law may have another form on the rig, as
     friction has and a bias or a delay has not."""
 
@@ -128,7 +128,7 @@ def counted_alike(trials: Sequence[Trial], base: Fitted) -> list[Trial]:
 
 
 def plainest_first(trials: Sequence[Trial], established: Set[str]) -> list[Trial]:
-    """The trials, best first. The first one gives way to the best of those with fewer parameters that foretell left-out
+    """The trials, best first. The first one gives way to the best of those with fewer parameters that predict left-out
     experiments as well within its doubt: an offset, for friction that differs by direction in a single run."""
     first = trials[0]
     for plain in trials[1:]:
