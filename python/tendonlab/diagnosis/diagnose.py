@@ -43,7 +43,7 @@ FORCED = "The check found problems in the logs that mislead a diagnosis. The dia
 log = logging.getLogger("tendonlab")
 
 
-class _Found(NamedTuple):
+class _Outcome(NamedTuple):
     """A finished search; the untouched simulator, fitted in its initial states alone; the logs with their controller,
     where models were weighed without; warnings; whether models were weighed in short windows, as no series of simulated
     rigs was whose truth is known."""
@@ -51,7 +51,7 @@ class _Found(NamedTuple):
     search: Search
     nominal: Fitted
     loop: Case | None
-    doubts: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     in_parts: bool = False
 
 
@@ -78,20 +78,20 @@ def diagnose(
     began, seed = time.monotonic(), checked(seed)
     system, names = simulator_of(dataset, system), _library(dataset, library)
     _require_samples(dataset)
-    found = check(dataset, system=system)
-    if found.blocks and not force:
-        return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
-    if any(finding.problem == "outliers" for finding in found.findings):
+    logs = check(dataset, system=system)
+    if logs.blocks and not force:
+        return data_fault(dataset, system, logs, seed=seed, seconds=time.monotonic() - began)
+    if any(finding.problem == "outliers" for finding in logs.findings):
         dataset = without_outliers(dataset)
     with open_workshop(names, progress=progress) as shop:
-        of = _search(dataset, system, shop)
-        found = checked_again(found, dataset, of.search)
-        if found.blocks and not force:
-            return data_fault(dataset, system, found, seed=seed, seconds=time.monotonic() - began)
-        why = answer(of.search, of.nominal, of.loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
-    warnings = (*((FORCED,) if found.blocks else ()), *of.doubts, *why.warnings)
-    data = tuple(finding.to_dict() for finding in found.findings)
-    return replace(why, data=data, warnings=warnings, calibrated=why.calibrated and not of.in_parts)
+        search, nominal, loop, warnings, in_parts = _search(dataset, system, shop)
+        logs = checked_again(logs, dataset, search)
+        if logs.blocks and not force:
+            return data_fault(dataset, system, logs, seed=seed, seconds=time.monotonic() - began)
+        found = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
+    warnings = (*((FORCED,) if logs.blocks else ()), *warnings, *found.warnings)
+    data = tuple(finding.to_dict() for finding in logs.findings)
+    return replace(found, data=data, warnings=warnings, calibrated=found.calibrated and not in_parts)
 
 
 @with_one_blas_thread
@@ -103,23 +103,23 @@ def best_model(dataset: Dataset, *, progress: bool) -> Fitted:
         return _search(dataset, system, shop).search.final
 
 
-def _search(dataset: Dataset, system: System, shop: Workshop) -> _Found:
+def _search(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     """What `_searched` finds, and warnings: where inputs were not held between their samples (if nobody states that
     they are, they are taken as straight), and where models were weighed in short windows."""
     dataset = with_found_resolutions(dataset)
-    found = _searched(dataset, system, shop)
-    if drawn := straight_inputs(dataset, system, found.search, shop):
+    outcome = _searched(dataset, system, shop)
+    if drawn := straight_inputs(dataset, system, outcome.search, shop):
         if not drawn.is_stated_otherwise:
-            dataset, found = drawn.dataset, _searched(drawn.dataset, system, shop)
-        found = found._replace(doubts=(drawn.words,))
-    if parts := in_windows(dataset, found.search):
+            dataset, outcome = drawn.dataset, _searched(drawn.dataset, system, shop)
+        outcome = outcome._replace(warnings=(drawn.words,))
+    if parts := in_windows(dataset, outcome.search):
         again = _searched(parts[0], system, shop)
         if again.search.selected:
-            return again._replace(doubts=(*found.doubts, parts[1]), in_parts=True)
-    return found
+            return again._replace(warnings=(*outcome.warnings, parts[1]), in_parts=True)
+    return outcome
 
 
-def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Found:
+def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     """A search of the thinned logs under the noise floor that they show."""
     few = thinned(dataset, system)
     loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
@@ -136,7 +136,7 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Found:
     fitter, tuned = renewed(fitter, tuned, shop.pool)
     search = confirmed(select_effects(fitter, tuned, shop), shop)
     log.info("selected %s", search.selected)
-    return _Found(search, nominal, loop)
+    return _Outcome(search, nominal, loop)
 
 
 def _tuned(fitter: Fitter, rough: Fitted, nominal: Fitted, initial: list[list[float]]) -> Fitted:
