@@ -14,7 +14,10 @@ from tendonlab.data.units import convert
 from tendonlab.diagnosis.answer.motions import (
     DURATION,
     EASE,
+    FULL,
     RATE,
+    SLOWEST,
+    USUAL,
     Motion,
     Reach,
     eased,
@@ -33,7 +36,6 @@ from tendonlab.simulation.system import System
 
 PLACES, SPEEDS = ("angle", "displacement"), ("flow", "speed", "angular_speed")
 SLOWLY = "slowly goes through its range"
-SLOWEST, FULL = 0, 2  # of `paths`: those that are also made under changing loads
 MOST_SLOWED, SLOWED = 2.0, 1.1  # times, by which a plan may be slower than its motions, and from which its words say so
 EASES, LONGEST_EASE = 3.4, 2.0  # times speed over acceleration: how long it takes to reach a speed from rest; s
 MOVES = 1e-6  # of its range: what an input that moves changes by in a second
@@ -231,7 +233,7 @@ def _over(part: float, whole: float) -> float:
 
 def _shapes(channel: _Channel, rests: bool) -> list[Motion]:
     made = paths(channel.reach, channel.place)
-    return [*made, rested(made[1])] if rests else made
+    return [*made, rested(made[USUAL])] if rests else made
 
 
 def _unit(path: np.ndarray) -> np.ndarray:

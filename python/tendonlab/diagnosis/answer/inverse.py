@@ -10,6 +10,8 @@ import pandas as pd
 
 from tendonlab.fitting.case import Case
 from tendonlab.report.diagnosis import SideTable
+from tendonlab.report.numbers import unit_text
+from tendonlab.simulation.catalog import unit
 from tendonlab.simulation.motor import effort_per_command
 from tendonlab.simulation.system import System
 
@@ -53,12 +55,13 @@ def inverse_dynamics(case: Case, systems: Sequence[System], judged: Sequence[int
             {"model": " + ".join(["nominal structure", *added]), "fitted rms": _rms(effort - train @ fit),
              "held-out rms": _rms(np.concatenate(held)), **dict(zip(names, fit, strict=True))}
         )  # fmt: skip
-    unit = "N" if case.system.axis == "linear" else "N·m"
+    effort_unit = unit_text(unit("effort", case.system.axis))
     return SideTable(
         title="Inverse dynamics",
         frame=pd.DataFrame(rows).set_index("model"),
-        note=f"Least squares on the drive effort, rms in {unit}; position, its derivatives and the effort filtered at "
-        f"{CUTOFF:.0f} Hz without phase shift. Independent of the replay; blind to what the loop does with an error.",
+        note=f"Least squares on the drive effort, rms in {effort_unit}; position, its derivatives and the effort "
+        f"filtered at {CUTOFF:.0f} Hz without phase shift. Independent of the replay; blind to what the loop does with "
+        "an error.",
     )
 
 

@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tendonlab.fitting.case import Case
+from tendonlab.report.numbers import unit_text
 from tendonlab.simulation.catalog import unit as unit_of
 from tendonlab.simulation.system import System
 
 DURATION, RATE = 6.0, 250.0
 EASE = 0.5  # s in which a motion starts from rest
 SEEN = 0.995  # quantile of logged speeds and accelerations that a rig is taken to manage
+SLOWEST, USUAL, FULL = 0, 1, 2  # of `paths`
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,8 @@ def motions(case: Case, output: str) -> list[Motion]:
     gravity = 0.0 if row is None else case.system.parameters[row.name]
     if gravity != 0.0:
         heavier = 0.5 * abs(gravity)
-        full = made[2]
-        effort = unit_of("effort", case.system.axis).replace("*", "·")
+        full = made[FULL]
+        effort = unit_text(unit_of("effort", case.system.axis))
         words = f"{full.words}, with a load that adds {heavier:.2g} {effort} of gravity at 90 degrees"
         made.append(Motion(words, full.path, heavier))
     return made

@@ -10,7 +10,7 @@ import numpy as np
 
 from tendonlab.diagnosis.answer.driven import drives
 from tendonlab.diagnosis.answer.looped import Loop, Looped
-from tendonlab.diagnosis.answer.motions import motions, rested
+from tendonlab.diagnosis.answer.motions import USUAL, motions, rested
 from tendonlab.diagnosis.answer.plan import Plan
 from tendonlab.diagnosis.search.delays import twin_delays
 from tendonlab.errors import NumericalError
@@ -43,7 +43,7 @@ def plans(case: Case, driven: Replay, *, rests: bool = False) -> list[Plan]:
     if loop is None:
         return []
     made = motions(case, loop.output)
-    return [Looped(motion, loop) for motion in (*made, *([rested(made[1])] if rests else []))]
+    return [Looped(motion, loop) for motion in (*made, *([rested(made[USUAL])] if rests else []))]
 
 
 def ranked(
