@@ -20,7 +20,8 @@ RIDGE = 0.02  # prior weight of each cell, of an even share of the samples
 
 
 FAR_TRAINED = 8.0  # mean square over what the sensors and run-to-run friction may leave, beyond which it is no noise
-FAR_SENSED, FAR_SCATTER = 12.0, 2.0  # over what sensors, and these and friction leave: 209 rigs left 9.9 or 0.3 at most
+BEYOND_SENSORS = 12.0  # mean square over what sensors leave, beyond which it is no noise where it is also
+BEYOND_SCATTER = 2.0  # over what these and that friction leave; of 209 rigs that lack nothing none passed 9.9 and 0.3
 FAR_SCATTERED = 4.0  # mean square of run-to-run factors over what is plausible: beyond twice that they are no noise
 FOLLOWED = 0.2  # share of the residual that follows the motion or drifts, beyond which it is no noise
 FOLLOWED_REPEATED = 0.06  # the same where repeats tell the noise: 77 rigs that lack nothing left 0.03 at most

@@ -9,7 +9,7 @@ from tendonlab.checking.finding import Check
 from tendonlab.data import Dataset
 from tendonlab.diagnosis.answer.heldout import level, replay
 from tendonlab.diagnosis.search.select import Search
-from tendonlab.diagnosis.windows import is_of
+from tendonlab.diagnosis.windows import is_part_of
 from tendonlab.errors import NumericalError
 
 LATE = "The check of the logs alone saw no late experiment: the lag shows once {} is simulated."
@@ -30,7 +30,7 @@ def checked_again(found: Check, dataset: Dataset, search: Search) -> Check:
 def _is_predicted(experiment: str, search: Search) -> bool:
     """Whether the model that came out leaves no more than noise of an experiment."""
     case = search.fitter.case
-    runs = [i for i, each in enumerate(case.experiments) if is_of(each.name, experiment)]
+    runs = [i for i, each in enumerate(case.experiments) if is_part_of(each.name, experiment)]
     try:
         return level(replay(case, [search.final.system] * len(runs), runs), search.fitter.floor) < PREDICTED
     except NumericalError:

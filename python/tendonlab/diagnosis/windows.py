@@ -16,7 +16,7 @@ from tendonlab.diagnosis.search.select import Search
 WINDOW = 1.0  # s
 FEW = 8.0  # samples of an experiment that count as independent, below which its parts tell more
 LARGE = 8.0  # times the floor (mean square) that the model must leave: below, what it leaves may be noise
-PART = " (part {})"  # after the name of an experiment
+PART = " (part "  # after the name of an experiment
 WORDS = (
     "Whole runs of the simulator err for seconds at a time, so that {:.0f} samples of them count as independent. So "
     "models were weighed by parts of {:g} s, each from the motion measured at its beginning; held-out errors are those "
@@ -39,9 +39,9 @@ def in_windows(dataset: Dataset, search: Search) -> tuple[Dataset, str] | None:
     return replace(dataset, experiments=parts), WORDS.format(count, WINDOW)
 
 
-def is_of(part: str, experiment: str) -> bool:
+def is_part_of(part: str, experiment: str) -> bool:
     """Whether `part` names the experiment or a part of it."""
-    return part == experiment or part.partition(PART.partition("{")[0])[0] == experiment
+    return part == experiment or part.partition(PART)[0] == experiment
 
 
 def _parts(experiment: Experiment) -> Iterator[Experiment]:
@@ -50,7 +50,5 @@ def _parts(experiment: Experiment) -> Iterator[Experiment]:
     num = min(max(1, round(experiment.duration / WINDOW)), max(1, len(experiment.data) // (2 * FEWEST)))
     ends = np.linspace(0, len(experiment.data) - 1, num + 1).astype(int)
     for k, (first, last) in enumerate(pairwise(ends)):
-        part = replace(
-            experiment, name=f"{experiment.name}{PART.format(k + 1)}", data=experiment.data.iloc[first : last + 1]
-        )
+        part = replace(experiment, name=f"{experiment.name}{PART}{k + 1})", data=experiment.data.iloc[first : last + 1])
         yield replace(part, initial=experiment.initial if k == 0 else {}, repeat=None)

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from tendonlab.diagnosis.discrepancy import (
-    FAR_SCATTER,
+    BEYOND_SCATTER,
     FAR_SCATTERED,
-    FAR_SENSED,
+    BEYOND_SENSORS,
     FAR_TRAINED,
     FOLLOWED,
     FOLLOWED_BESIDE,
@@ -101,7 +101,7 @@ class Levels:
     def beyond_sensors(self) -> float:
         """How far what tuning leaves exceeds what is noise where nothing repeats; from 1 on it is none. The friction of
         each run is fitted, so that sensors should leave the rest, and friction that differs hardly."""
-        return 0.0 if self.repeated else min(self.tuned / FAR_SENSED, self.trained / FAR_SCATTER)
+        return 0.0 if self.repeated else min(self.tuned / BEYOND_SENSORS, self.trained / BEYOND_SCATTER)
 
     def most_followed(self, *, selected: bool) -> float:
         """Share of what the final model leaves that may follow the motion; beyond that something is missing. Where
