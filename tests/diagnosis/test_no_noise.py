@@ -8,8 +8,8 @@ import pytest
 from tendonlab.diagnosis.answer.verdict import Levels, decide
 from tendonlab.diagnosis.discrepancy import (
     BEYOND_SCATTER,
-    FAR_SCATTERED,
     BEYOND_SENSORS,
+    FAR_SCATTERED,
     FAR_TRAINED,
     FOLLOWED,
     RINGS,

@@ -10,8 +10,8 @@ import numpy as np
 
 from tendonlab.diagnosis.discrepancy import (
     BEYOND_SCATTER,
-    FAR_SCATTERED,
     BEYOND_SENSORS,
+    FAR_SCATTERED,
     FAR_TRAINED,
     FOLLOWED,
     FOLLOWED_BESIDE,
