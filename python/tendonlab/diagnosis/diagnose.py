@@ -26,7 +26,7 @@ from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import with_found_resolutions
 from tendonlab.fitting.problem import PLAIN, Fitter
-from tendonlab.fitting.replay import opened
+from tendonlab.fitting.replay import is_mostly_at_its_limit, opened
 from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked
@@ -37,6 +37,10 @@ UNREPEATED = 0.2  # sd of friction from run to run that no friction has: the clo
 NO_REPEAT = (
     "The closed loop does not repeat, as in a limit cycle whose phase is chance. So errors are those of an injection, "
     "which follows the logged motion."
+)
+AT_ITS_LIMIT = (
+    "The controller commands its limit most of the time and then hears nothing of the sensor. So errors are those of "
+    "an injection, which follows the logged motion."
 )
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
@@ -123,11 +127,12 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     """A search of the thinned logs under the noise floor that they show."""
     few = thinned(dataset, system)
     loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
-    case = make_case(replace(few, warnings=(*few.warnings, *trouble)), system)
-    rough, fitter = _under_floor(case, shop)
-    if fitter.floor.tau > UNREPEATED and (logged := opened(few, system)).controller is not few.controller:
-        case = make_case(replace(logged, warnings=(*logged.warnings, NO_REPEAT)), system)
-        rough, fitter = _under_floor(case, shop)
+    few = replace(few, warnings=(*few.warnings, *trouble))
+    if is_mostly_at_its_limit(few, system):
+        few = _opened(few, system, AT_ITS_LIMIT)
+    rough, fitter = _under_floor(make_case(few, system), shop)
+    if fitter.floor.tau > UNREPEATED and (logged := _opened(few, system, NO_REPEAT)) is not few:
+        rough, fitter = _under_floor(make_case(logged, system), shop)
     initial = [[*states, *(0.0 for _ in fitter.case.scatter)] for states in rough.initial]
     nominal = fitter.fit(  # any: there may be no unknowns
         fitter.case.system, initial=initial, known=True, solve=any(initial), tolerance=PLAIN
@@ -137,6 +142,13 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     search = confirmed(select_effects(fitter, tuned, shop), shop)
     log.info("selected %s", search.selected)
     return _Outcome(search, nominal, loop)
+
+
+def _opened(dataset: Dataset, system: System, why: str) -> Dataset:
+    """The dataset without its controller, and with the warning `why`, where every log holds what that commanded; else
+    the dataset itself."""
+    logged = opened(dataset, system)
+    return dataset if logged is dataset else replace(logged, warnings=(*logged.warnings, why))
 
 
 def _tuned(fitter: Fitter, rough: Fitted, nominal: Fitted, initial: list[list[float]]) -> Fitted:

@@ -21,6 +21,7 @@ DAMPING = 1.0  # ratio of the loop: critical
 CONTRADICTED = 0.1  # of the rms command, by which a stated controller may miss what was logged; right ones miss 0.014
 MEANS = 0.05  # of the rms command, by which a log may miss the means of a faster controller; means miss 0.001 to 0.04
 RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection; at most twice that,
+AT_LIMIT, MOSTLY = 0.99, 0.5  # of the limit, and share of samples there, from which on a loop is driven by its limits
 NEEDED = 25.0  # rad/s: where logs are so slow that this is not reached, what no model explains would add up
 
 
@@ -72,6 +73,18 @@ def opened(dataset: Dataset, system: System) -> Dataset:
         return dataset
     runs = (replace(e, holds=e.holds | {command: True}) if is_slower(e, controller) else e for e in dataset)
     return replace(dataset, controller=None, experiments=tuple(runs))  # means hold from sample to sample
+
+
+def is_mostly_at_its_limit(dataset: Dataset, system: System) -> bool:
+    """Whether the controller commanded its limit, one way or the other, in most samples of the training experiments: it
+    then hears little of the sensor, and a free run of its loop soon loses the phase of the logs."""
+    controller = dataset.controller
+    if controller is None or not system.info.commanded or not np.isfinite(controller.limit):
+        return False
+    command = system.info.inputs[0].name
+    logged = [np.abs(e.data[command].to_numpy(dtype=float)) for e in dataset.train if command in e.data.columns]
+    shares = [float(np.mean(values >= AT_LIMIT * controller.limit)) for values in logged]
+    return bool(shares) and float(np.median(shares)) > MOSTLY
 
 
 def _lost(controller: Controller, experiment: Experiment, command: str) -> float:
