@@ -98,6 +98,7 @@ class EffectInfo:
     parameters: Final[tuple[str, ...]]
     needs: Final[tuple[str, ...]]
     roles: Final[int]
+    sees: Final[int]
     structural: Final[bool]
     law: Final[type[Law]]
 

@@ -23,6 +23,7 @@ from tendonlab.fitting.noise import white
 from tendonlab.fitting.priors import start_of
 from tendonlab.fitting.problem import Fitter
 from tendonlab.papers import s2
+from tendonlab.simulation.catalog import MEMORY, REFINES
 
 
 def test_candidates_come_most_promising_first(fitter: Fitter, nominal: Fitted) -> None:
@@ -130,3 +131,17 @@ def test_no_effect_of_a_motor_is_a_candidate_where_the_nuts_move_as_prescribed(t
 
 def test_nothing_idles_where_a_motor_drives(twin_case: Any) -> None:
     assert twin_case.idle == frozenset()
+
+
+def test_stribeck_friction_joins_any_dry_friction_but_bristles_need_a_level() -> None:
+    """The branches of a bushing are dry friction; no bristle could carry them."""
+    info = tl.system_info("cable_joint")
+    branches: Any = SimpleNamespace(info=info, effects=("bushing_1:bushing_branches",))
+    bare: Any = SimpleNamespace(info=info, effects=("joint:viscous",))
+    stribeck = info.effect("bushing_1:stribeck")
+    assert screen.can_be_added(stribeck, branches)
+    assert not screen.can_be_added(stribeck, bare)
+    bristle: Any = SimpleNamespace(name="bushing_1:bristle", element="bushing_1", needs=(), roles=MEMORY | REFINES)
+    assert not screen.can_be_added(bristle, branches)
+    level: Any = SimpleNamespace(info=info, effects=("bushing_1:coulomb",))
+    assert screen.can_be_added(bristle, level)

@@ -1,9 +1,11 @@
 """Static friction far above the kinetic one is no Stribeck effect."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+import tendonlab as tl
 from tendonlab.diagnosis.search.stiction import MOST, trouble_with_stiction
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
@@ -36,3 +38,13 @@ def test_a_joint_whose_friction_grows_with_load_may_have_little_of_its_own(fitte
     system = sliding.system.with_effects({"joint:load_dependence": {"joint_load_dependence": 0.1}})
     loaded = fitter.fit(system, added=(NAME, "joint:load_dependence"), solve=False)
     assert trouble_with_stiction(fitter.case, loaded, NAME) == ""
+
+
+def test_a_bushing_with_friction_of_its_own_may_have_little_coulomb_friction_beside_it() -> None:
+    """Its branches are dry friction: the Stribeck excess is small beside them."""
+    info = tl.system_info("cable_joint")
+    values = {"bushing_1_coulomb": 0.1, "bushing_1_static_excess": 10.0, "bushing_1_stribeck_velocity": 0.01}
+    there = ("bushing_1:bushing_branches", "bushing_1:coulomb", "bushing_1:stribeck")
+    for effects, told in ((there, True), (there[1:], False)):
+        fitted: Any = SimpleNamespace(system=SimpleNamespace(info=info, effects=effects, parameters=values))
+        assert (trouble_with_stiction(None, fitted, "bushing_1:stribeck") == "") is told  # type: ignore[arg-type]

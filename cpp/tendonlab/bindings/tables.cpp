@@ -93,6 +93,7 @@ void bind_effects(py::module_& module) {
        field("parameters", &EffectInfo::parameters, "Public names of its parameters."),
        field("needs", &EffectInfo::needs, "Effects whose parameters it shares."),
        field("roles", &EffectInfo::roles, "How it combines with other laws: bits of core/law.hpp."),
+       field("sees", &EffectInfo::sees, "What it reads of its port: bits of core/law.hpp."),
        field("structural", &EffectInfo::structural, "Part of the system, always on.")})
       .def_property_readonly(
           "law",

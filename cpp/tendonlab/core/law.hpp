@@ -57,7 +57,8 @@ Port<D> with_scalar(const Port<S>& of) {
 /// How laws combine in a slot or chain; a law may have several roles. motion: changes what the later laws see; level:
 /// adds to the dry friction; factor: multiplies it; force: adds; memory: has a state with a rate; refines: shapes the
 /// dry friction of other laws and makes none itself; whole: all the friction of its slot, so no other law joins it;
-/// gain: multiplies the effort that the element passes on; signal: acts on a signal, in a chain (core/chain.hpp).
+/// gain: multiplies the effort that the element passes on; signal: acts on a signal, in a chain (core/chain.hpp); dry:
+/// a force that turns with the direction of motion, which is dry friction beside the level.
 namespace role {
 enum : unsigned {
   motion = 1,
@@ -68,7 +69,8 @@ enum : unsigned {
   refines = 32,
   whole = 64,
   gain = 128,
-  signal = 256
+  signal = 256,
+  dry = 512
 };
 }
 

@@ -18,7 +18,7 @@ struct BushingBranches {
                                     equation = "a_i + b_ij T sin((theta - c_i)/2), i by sgn(v), j by theta < c_i",
                                     summary =
                                         "bushing: force of a cable by wrap angle, direction and side; T: pretension";
-  static constexpr unsigned roles = role::force, sees = sees_wrap | sees_load | sees_direction;
+  static constexpr unsigned roles = role::force | role::dry, sees = sees_wrap | sees_load | sees_direction;
   T a1, a2, b11, b12, b21, b22, c1, c2;
   bool mirrored = false;  ///< is the port?
 

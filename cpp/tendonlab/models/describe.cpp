@@ -76,6 +76,7 @@ void Describe::add_law(const LawFacts& law) {
                     {},
                     {},
                     law.roles,
+                    law.sees,
                     is_structural(name)};
   for (const ParameterInfo& p : law.parameters) {
     description.parameter_of_field.push_back(add(law.partner, p));

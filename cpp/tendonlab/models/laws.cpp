@@ -141,8 +141,8 @@ std::unique_ptr<const LawBox> make_box(const Numbers& values) {
 template <class L>
 LawFacts facts_of(std::string_view group) {
   LawFacts facts{
-      group,    L::name,          L::noun,        L::equation, L::source,           L::summary,  PartnerOf<L>::name,
-      L::roles, delays_signal<L>, keeps_state<L>, {},          own_parameters<L>(), &make_box<L>};
+      group,    L::name, L::noun,          L::equation,    L::source, L::summary,          PartnerOf<L>::name,
+      L::roles, L::sees, delays_signal<L>, keeps_state<L>, {},        own_parameters<L>(), &make_box<L>};
   PortOf<L>::type::for_each_field([&](std::string_view name, unsigned, auto) { facts.fields.emplace_back(name); });
   for (ParameterInfo& p : facts.parameters) p.effect = L::name;
   return facts;

@@ -30,7 +30,7 @@ class LawBox {
 /// names are its own too.
 struct LawFacts {
   std::string_view group, name, noun, equation, source, summary, partner;
-  unsigned roles;
+  unsigned roles, sees;
   bool delays, keeps_state;
   std::vector<std::string> fields;  ///< of the port or signal that the law sees
   std::vector<ParameterInfo> parameters;

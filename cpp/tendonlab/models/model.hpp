@@ -26,7 +26,7 @@ struct EffectInfo {
   std::string equation, source, summary;
   std::vector<std::string> parameters;
   std::vector<std::string> needs;  ///< effects whose parameters it shares
-  unsigned roles;
+  unsigned roles, sees;
   bool structural;
 };
 /// A place where laws sit: its name, its axis (empty: the system's), in words ("at the joint"), and the element with

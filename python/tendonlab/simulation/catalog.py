@@ -13,11 +13,24 @@ from tendonlab.errors import ParameterError, expected_one_of
 __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInfo", "PortInfo", "SystemInfo"]
 
 AXES = ("rotary", "linear")
-LEVEL, FACTOR, MEMORY, REFINES, WHOLE, SIGNAL = 2, 4, 16, 32, 64, 256  # roles of laws, as core/law.hpp numbers them
+LEVEL, FACTOR, MEMORY, REFINES, WHOLE, SIGNAL, DRY = (
+    2,
+    4,
+    16,
+    32,
+    64,
+    256,
+    512,
+)  # roles of laws, as core/law.hpp numbers them
 DEFAULTED = ("command_gain", "motor_inertia_share")  # roles of parameters that are typical unless stated
 DIMENSIONS = _core.dimensions()
 PORT_QUANTITIES = tuple(_core.port_quantities())  # that can be recorded of each port
 Row = TypeVar("Row", ParameterInfo, EffectInfo, ElementInfo)
+
+
+def is_dry(effect: EffectInfo) -> bool:
+    """Whether an effect is dry friction by itself."""
+    return bool(effect.roles & (LEVEL | DRY)) and not effect.roles & REFINES
 
 
 class SystemInfo(_core.SystemInfo):

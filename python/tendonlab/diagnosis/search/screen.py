@@ -16,7 +16,7 @@ from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted, solved
 from tendonlab.fitting.priors import AMPLITUDE_SD, is_fraction, start_of
 from tendonlab.fitting.problem import Fitter
-from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo
+from tendonlab.simulation.catalog import LEVEL, REFINES, WHOLE, EffectInfo, ParameterInfo, is_dry
 from tendonlab.simulation.prepare import Replay
 from tendonlab.simulation.system import System
 
@@ -105,7 +105,8 @@ def can_be_added(effect: EffectInfo, system: System) -> bool:
     if not effect.roles & REFINES:
         return True
     present = [e for e in system.info.effects if e.name in system.effects and e.element == effect.element]
-    return any(e.roles & LEVEL and not e.roles & REFINES for e in present)
+    adds = effect.roles & LEVEL  # and takes no part of the dry friction that is there
+    return any(is_dry(e) and (adds or e.roles & LEVEL) for e in present)
 
 
 def screen(fitter: Fitter, base: Fitted, effect: str) -> Screened:

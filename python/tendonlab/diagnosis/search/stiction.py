@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.simulation.catalog import LEVEL, REFINES
+from tendonlab.simulation.catalog import LEVEL, REFINES, is_dry
 
 MOST = 4.0  # static over kinetic friction: imitations needed 4.5 and 11.5
 TOO_STICKY = "it would make static friction {:.2g} times the kinetic one"
@@ -19,7 +19,7 @@ def trouble_with_stiction(_: Case, fitted: Fitted, effect: str) -> str:
     info = fitted.system.info
     law = info.effect(effect)
     there = [info.effect(name) for name in fitted.system.effects]
-    dry = [e for e in there if e.element == law.element and e.roles & LEVEL and not e.roles & REFINES]
+    dry = [e for e in there if e.element == law.element and is_dry(e)]
     if not (law.roles & LEVEL and law.roles & REFINES) or [e.effect for e in dry] != ["coulomb"]:
         return ""
     values = fitted.system.parameters
