@@ -24,7 +24,7 @@ from tendonlab.diagnosis.answer.verdict import Verdict
 VERDICTS = ("data_fault", "no_gap", "parameters_only", "effect", "unknown_effect")
 
 
-def cases(count: int, *, sharpness: float, lapse: float = 0.0, missed: float = 0.0) -> list[Judged]:
+def cases(count: int, *, sharpness: float, lapse: float = 0.0, missed: float = 0.0, left: float = 1e3) -> list[Judged]:
     """Cases whose log odds are `sharpness` times as large as they should be; a share of them has any verdict at all,
     and a share an effect that the evidence excludes."""
     draw = np.random.default_rng(5)
@@ -43,7 +43,7 @@ def cases(count: int, *, sharpness: float, lapse: float = 0.0, missed: float = 0
         else:
             effects |= {"a:d": 1e-6}
         told = max(evidence, key=evidence.__getitem__)
-        made.append(Judged("rigid_joint", False, came, there, evidence, effects, told, runs=7))
+        made.append(Judged("rigid_joint", False, came, there, evidence, effects, told, left, runs=7))
     return made
 
 
@@ -71,9 +71,24 @@ def test_a_share_of_cases_that_nothing_predicts_is_a_lapse() -> None:
     assert fitted(cases(3000, sharpness=1.0, lapse=0.2)).verdicts.lapse == pytest.approx(0.2, abs=0.06)
 
 
+def test_what_goes_wrong_near_the_noise_alone_is_no_lapse_far_from_it() -> None:
+    near, far = cases(1200, sharpness=1.0, lapse=0.3, left=1.0), cases(1200, sharpness=1.0, left=50.0)
+    of = fitted([*near, *far]).verdicts
+    assert of.at(1.0).lapse == pytest.approx(0.3, abs=0.07)
+    assert of.at(50.0).lapse < 0.02
+
+
+def test_the_lapse_falls_with_the_square_of_what_tuning_leaves_over_the_noise() -> None:
+    of = Tempering(lapse=0.01, near_noise=0.2, missed=0.005)
+    assert [of.at(left).lapse for left in (0.3, 1.0, 2.0, 10.0)] == pytest.approx([0.21, 0.21, 0.06, 0.012])
+    assert Tempering(lapse=0.9, near_noise=0.9, missed=0.01).at(1.0).lapse == pytest.approx(0.99)
+    map_ = Calibration(verdicts=of, effects=of, systems=("rigid_joint",)).at(2.0)
+    assert (map_.verdicts.lapse, map_.effects.lapse, map_.systems) == (pytest.approx(0.06),) * 2 + (("rigid_joint",),)
+
+
 def test_effects_that_the_evidence_excludes_are_there_as_often_as_they_were() -> None:
     for missed in (0.0, 0.02):
-        of = fitted(cases(3000, sharpness=1.0, missed=missed)).effects
+        of = fitted(cases(1600, sharpness=1.0, missed=missed)).effects
         assert of.missed == pytest.approx(0.5 * missed, abs=0.004)  # half of them beside one that counts with them
         assert of.of_one(0.0) == pytest.approx(of.missed, abs=1e-3)
 
@@ -169,7 +184,8 @@ def test_cases_that_were_drawn_to_test_are_never_fitted(tmp_path: Path, fitted_o
     (tmp_path / "case-001.toml").write_text(truth, encoding="utf-8")
     (tmp_path / "case-001").mkdir()
     evidence = {"verdict": {"no_gap": 0.9, "effect": 0.1}, "effects": {"load:offset": 0.1}}
-    report = {"verdict": "no_gap", "details": {"evidence": evidence}, "split": {"train": ["a"]}}
+    details = {"evidence": evidence, "mean_square": {"refitted": 1.0}}
+    report = {"verdict": "no_gap", "details": details, "split": {"train": ["a"]}}
     (tmp_path / "case-001" / "report.json").write_text(json.dumps(report), encoding="utf-8")
     if refused:
         with pytest.raises(ValueError, match=r"case-001.toml: this case was drawn for test; expected a series"):

@@ -29,15 +29,16 @@ from .runner import REPORT, VERDICTS
 
 LEAST_CASES = 20  # of a kind of rig, to confirm the map there
 FALSE = 1.96  # Spiegelhalter's z beyond which probabilities are false
-USUAL, SPREAD = -2.2, 1.4  # log odds of twice the lapse that is believed before any case, 5 %, and their sd
-SELDOM = -5.3  # the same of an effect that is missed, 0.25 %
+USUAL, SPREAD = -2.94, 1.4  # log odds of twice the lapse that is believed before any case, 2.5 %, and their sd
+USUAL_NEAR_NOISE = -1.4  # log odds of what goes wrong besides near the noise, 20 %
+SELDOM = -5.3  # log odds of twice the share of effects that are missed, 0.25 %
 Folders = Sequence[tuple[Path, Path]]  # truths and reports
 
 
 @dataclass(frozen=True)
 class Judged:
     """A diagnosed case: the true verdict, effects that count as right, the evidence of the report, the verdict that it
-    states, and the number of training runs."""
+    states, the mean square that tuning leaves, in units of the noise, and the number of training runs."""
 
     system: str
     repeats: bool
@@ -46,6 +47,7 @@ class Judged:
     verdicts: dict[str, float]
     effects: dict[str, float]
     told: str
+    left: float
     runs: int
 
     def events(self) -> list[tuple[float, bool]]:
@@ -84,6 +86,7 @@ def _judged(sealed: Path, reports: Path) -> Iterable[Judged]:
             verdicts=evidence["verdict"],
             effects=evidence["effects"],
             told=found["verdict"],
+            left=float(found["details"]["mean_square"]["refitted"]),
             runs=len(found["split"]["train"]),
         )
 
@@ -99,14 +102,15 @@ def _told(reports: Path) -> dict[str, str]:
 def fitted(cases: Sequence[Judged]) -> Calibration:
     """The map of most likelihood, held near no change by weak priors: a few cases change little."""
 
-    def of_verdicts(by: Tempering) -> float:
-        of = Calibration(verdicts=by)
-        return -sum(math.log(max(of.of_verdicts(case.verdicts)[case.verdict], LEAST)) for case in cases)
+    events = [(case.left, case.events()) for case in cases]
 
-    events = [event for case in cases for event in case.events()]
+    def of_verdicts(by: Tempering) -> float:
+        told = (Calibration(verdicts=by.at(case.left)).of_verdicts(case.verdicts)[case.verdict] for case in cases)
+        return -sum(math.log(max(p, LEAST)) for p in told)
 
     def of_effects(by: Tempering) -> float:
-        return -sum(math.log(max(p if there else 1.0 - p, LEAST)) for p, there in _tempered(events, by))
+        told = (pair for left, of in events for pair in _tempered(of, by.at(left)))
+        return -sum(math.log(max(p if there else 1.0 - p, LEAST)) for p, there in told)
 
     return Calibration(verdicts=_best(of_verdicts, misses=False), effects=_best(of_effects, misses=True))
 
@@ -116,14 +120,14 @@ def _tempered(events: Iterable[tuple[float, bool]], by: Tempering) -> list[tuple
 
 
 def _best(surprise: Callable[[Tempering], float], *, misses: bool) -> Tempering:
-    """The tempering of least surprise; priors: temperature 1 within a factor of e, lapse 5 % and, if it `misses`
-    effects, 0.25 % of these within a factor of 4."""
-    usual = np.array([0.0, USUAL, SELDOM][: 3 if misses else 2])
-    spread = np.array([1.0, SPREAD, SPREAD][: len(usual)])
+    """The tempering of least surprise; priors: temperature 1 within a factor of e; within factors of 4 a lapse of
+    2.5 %, 20 % near the noise and, if it `misses` effects, 0.25 % of these."""
+    usual = np.array([0.0, USUAL, USUAL_NEAR_NOISE, SELDOM][: 4 if misses else 3])
+    spread = np.array([1.0, SPREAD, SPREAD, SPREAD][: len(usual)])
 
     def tempering(x: Array) -> Tempering:
-        lapse, missed = (0.5 * float(expit(of)) for of in (*x[1:], -np.inf)[:2])
-        return Tempering(temperature=float(np.exp(x[0])), lapse=lapse, missed=missed)
+        lapse, near_noise, missed = (float(expit(of)) for of in (*x[1:], -np.inf)[:3])
+        return Tempering(temperature=float(np.exp(x[0])), lapse=lapse / 2, near_noise=near_noise, missed=missed / 2)
 
     def cost(x: Array) -> float:
         return surprise(tempering(x)) + 0.5 * float(np.sum(np.square((x - usual) / spread)))
@@ -160,12 +164,12 @@ def results_on(cases: Sequence[Judged], of: Calibration) -> dict[str, dict[str, 
 
 def stated_verdicts(cases: Sequence[Judged], of: Calibration) -> list[tuple[float, bool]]:
     """The probability of each reported verdict, and whether that is the true one."""
-    return [(of.of_verdicts(case.verdicts)[case.told], case.told == case.verdict) for case in cases]
+    return [(of.at(case.left).of_verdicts(case.verdicts)[case.told], case.told == case.verdict) for case in cases]
 
 
 def stated_effects(cases: Sequence[Judged], of: Calibration) -> list[tuple[float, bool]]:
     """The probability of each effect of each case, and whether the effect is there."""
-    return _tempered([event for case in cases for event in case.events()], of.effects)
+    return [pair for case in cases for pair in _tempered(case.events(), of.at(case.left).effects)]
 
 
 def spreads_on(cases: Sequence[Judged], of: Calibration) -> dict[str, float]:

@@ -57,7 +57,7 @@ def answer(
     near = allowed(case, {"refitted": search.path[0], "with_effect": search.path[-1]}, floor, stages, judged)
     levels = _levels(search, nominal, stages, near, floor, drift, outlier, judged=judged, seed=seed)
     raw, calibration = decide(search.rounds, search.selected, levels), shipped(repeats=fitter.floor.repeated)
-    verdict = calibration.applied(raw)
+    verdict = calibration.at(search.tuned.mean_square).applied(raw)
     how = notes.details(shown.case, floor, nominal, search, drift) | {"steps": shown.table_of_steps(search)}
     records = where.PortRecords(case, stages["with_effect"], judged)
     located = _where(case, stages["refitted"], floor, records, verdict)

@@ -19,12 +19,19 @@ LEAST = 1e-6  # probability; evidence beyond it says no more
 
 @dataclass(frozen=True, kw_only=True)
 class Tempering:
-    """p^(1/`temperature`), normalised, less a share `lapse`: what goes wrong however clear the evidence is. `missed`:
-    probability of an effect that the evidence excludes."""
+    """p^(1/`temperature`), normalised, less a share `lapse`: what goes wrong however clear the evidence is.
+    `near_noise`: what goes wrong besides where tuning leaves no more than noise, in which one cause looks like another.
+    `missed`: probability of an effect that the evidence excludes."""
 
     temperature: float = 1.0
     lapse: float = 0.0
+    near_noise: float = 0.0
     missed: float = 0.0
+
+    def at(self, left: float) -> Tempering:
+        """The same where tuning leaves a mean square of `left`, in units of the noise."""
+        lapse = self.lapse + self.near_noise / max(left, 1.0) ** 2
+        return replace(self, lapse=min(lapse, 1.0 - self.missed), near_noise=0.0)
 
     def of(self, raw: Mapping[str, float]) -> dict[str, float]:
         """Probabilities of what excludes each other; the lapse is spread over all of them, so their order stays."""
@@ -52,6 +59,10 @@ class Calibration:
     def holds(self, system: str, *, runs: int) -> bool:
         """Whether the map was confirmed on rigs of this kind with as few training experiments."""
         return system in self.systems and runs >= self.least_runs
+
+    def at(self, left: float) -> Calibration:
+        """The map where tuning leaves a mean square of `left`, in units of the noise."""
+        return replace(self, verdicts=self.verdicts.at(left), effects=self.effects.at(left))
 
     def of_verdicts(self, raw: Mapping[str, float]) -> dict[str, float]:
         """Probabilities of the verdicts. Only the check of the logs tells whether these are at fault."""
