@@ -87,11 +87,9 @@ def test_a_further_effect_is_no_error_of_a_shape_where_it_gains_much_or_leaves_l
     assert _worth_adding(fitter, base, trials, further=False, largest_gain=largest)
 
 
-EMPTY: dict[str, Any] = {  # a model without free parameters
-    "free": (),
-    "x": (),
-    "system": SimpleNamespace(info=SimpleNamespace(effect=lambda _: SimpleNamespace(parameters=(), roles=0))),
-}
+LAW = SimpleNamespace(parameters=(), element="joint", roles=0, sees=0)
+SYSTEM = SimpleNamespace(info=SimpleNamespace(effect=lambda _: LAW))
+EMPTY: dict[str, Any] = {"free": (), "x": (), "system": SYSTEM}  # a model without free parameters
 
 
 def test_a_trial_gains_what_its_model_has_over_the_one_it_extends() -> None:

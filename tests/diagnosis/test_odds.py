@@ -1,5 +1,6 @@
 """The odds of effects: evidence over a temperature, which grows with what no model explains or where shapes err."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -51,3 +52,14 @@ def test_the_shape_of_a_law_may_err_by_a_share_of_its_gain_but_not_that_of_a_bia
     trials = [trial(name, gain) for name, gain in gains.items()]
     found = Round.of(nominal, [], trials, established=set(gains), bar=DETECT, accepted=trials[0], failed={}).probability
     assert np.log(found[first] / found[second]) == pytest.approx(8.0 / temperature)
+
+
+@pytest.mark.parametrize(("acts", "temperature"), [(("bushing_1", 2, 12), 500.0), (("bushing_2", 2, 12), 100.0)])
+def test_the_form_of_a_variant_of_the_first_law_may_err_by_more(
+    nominal: Fitted, acts: tuple[str, int, int], temperature: float
+) -> None:
+    """Two laws of the same element that combine in the same way and read the same differ by their form alone."""
+    first = replace(trial("a", 10_000.0), acts=("bushing_1", 2, 12))
+    trials = [first, replace(trial("b", 9_600.0), acts=acts)]
+    found = Round.of(nominal, [], trials, established={"a", "b"}, bar=DETECT, accepted=first, failed={}).probability
+    assert np.log(found["a"] / found["b"]) == pytest.approx(400.0 / temperature)

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+import tendonlab as tl
 from tendonlab.diagnosis.search import refit as refits
 from tendonlab.diagnosis.search.refit import SKETCH, _annealed, more_evident, restarted
 from tendonlab.diagnosis.search.screen import Screened
@@ -112,6 +113,7 @@ def fit_of(misfit: float = 1.0, *, cost: float = 1.0, gain: float = 0.0, converg
     fit = SimpleNamespace(
         whitened_square=misfit, cost=cost, converged=converged, system="fitted", initial=((misfit,),), evidence=gain
     )
+    fit.mean_square = misfit
     fit.counted = lambda: fit
     return fit
 
@@ -189,8 +191,7 @@ def test_only_the_best_start_is_settled(
     monkeypatch.setattr(refits, "_fit", tried)
     monkeypatch.setattr(refits, "strained", lambda *_: False)
     fitter: Any = SimpleNamespace(settled=lambda fit: SimpleNamespace(evidence=10.0 + fit.evidence))
-    base: Any = None
-    found: Any = refits.refit(fitter, base, Screened("b", 1.0, ({}, {}), 1.0), pace=0.0)
+    found: Any = refits.refit(fitter, fit_of(), Screened("b", 1.0, ({}, {}), 1.0), pace=0.0)
     assert found.evidence == (10.0 + settled if settled is not None else fits[0].evidence)
 
 
@@ -209,13 +210,13 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
 
     def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
         tried.append(from_nominal)
-        return SimpleNamespace(mean_square=left, evidence=float(len(tried))), None
+        return fit_of(left, gain=float(len(tried))), None
 
     monkeypatch.setattr(refits, "_fit", fit)
     monkeypatch.setattr(refits, "strained", lambda *_: pulled)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    base: Any = SimpleNamespace(mean_square=before)
+    base = fit_of(before)
     found = refits.refit(nothing, base, Screened("b", 1.0, ({}, {}), 1.0, "" if simulated else "stopped"), pace=0.0)
     assert tried == nominal
     assert found is not None
@@ -223,13 +224,12 @@ def test_a_candidate_is_fitted_from_each_start_and_from_nominal_values_where_tun
 
 @pytest.mark.parametrize("fails", [True, False])
 def test_where_settling_fails_the_fit_before_counts(fails: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    fit = SimpleNamespace(evidence=1.0, mean_square=1.0)
+    fit = fit_of(gain=1.0)
     monkeypatch.setattr(refits, "_fit", lambda *_, **__: (fit, fit))
     monkeypatch.setattr(refits, "strained", lambda *_: False)
     exploded = SimpleNamespace(evidence=-math.inf)
     fitter: Any = SimpleNamespace(settled=lambda _: raised(NumericalError("diverged") if fails else exploded))
-    base: Any = None
-    assert refits.refit(fitter, base, Screened("b", 1.0, ({},), 1.0), pace=0.0) is fit
+    assert refits.refit(fitter, fit_of(), Screened("b", 1.0, ({},), 1.0), pace=0.0) is fit
 
 
 @pytest.mark.parametrize("poor", [False, True])
@@ -240,12 +240,35 @@ def test_a_candidate_that_promises_little_there_is_not_fitted_from_nominal_value
 
     def fit(*given: Any, from_nominal: bool = False, **_: Any) -> Any:
         tried.append(from_nominal)
-        return SimpleNamespace(mean_square=5.0, evidence=1.0), None
+        return fit_of(5.0, gain=1.0), None
 
     monkeypatch.setattr(refits, "_fit", fit)
     monkeypatch.setattr(refits, "strained", lambda *_: True)
     monkeypatch.setattr(refits, "more_evident", lambda best, new: new)
     nothing: Any = None
-    base: Any = SimpleNamespace(mean_square=9.0)
+    base = fit_of(9.0)
     refits.refit(nothing, base, Screened("b", 1.0, ({},), 1.0, poor_when_believed=poor), pace=0.0)
     assert tried == ([False] if poor else [False, True])
+
+
+@pytest.mark.parametrize(("gains", "tried"), [([-5.0, 40.0], [0.2, 0.02]), ([1.0], [0.2])])
+def test_a_fit_that_leads_away_from_its_base_begins_again_with_little_of_the_effect(
+    gains: list[float], tried: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """More parameters need not fit worse."""
+    started = []
+
+    def fit(_fitter: Any, _base: Any, _effect: str, start: Any, *_: Any, **__: Any) -> Any:
+        started.append(start["joint_static_excess"])
+        assert start["joint_stribeck_velocity"] == 0.1
+        return fit_of(gain=gains[len(started) - 1]), None
+
+    monkeypatch.setattr(refits, "_fit", fit)
+    monkeypatch.setattr(refits, "strained", lambda *_: False)
+    base: Any = fit_of()
+    base.system = SimpleNamespace(info=tl.system_info("rigid_joint"))
+    starts = ({"joint_static_excess": 0.2, "joint_stribeck_velocity": 0.1},)
+    nothing: Any = None
+    found = refits.refit(nothing, base, Screened("joint:stribeck", 1.0, starts, 1.0), pace=0.0)
+    assert started == pytest.approx(tried)
+    assert found.evidence == gains[-1]

@@ -17,7 +17,7 @@ def believed(strain: float, **more: Any) -> Any:
     free = (SimpleNamespace(name="inertia", mean=1.0, sd=0.1), SimpleNamespace(name="size", mean=0.0, sd=3.0))
     purposes = {"inertia": "structure", "size": "amplitude"}
     info = SimpleNamespace(
-        effect=lambda name: SimpleNamespace(parameters=("size",), roles=LEVEL),
+        effect=lambda name: SimpleNamespace(parameters=("size",), element="joint", roles=LEVEL, sees=1),
         parameter=lambda name: SimpleNamespace(purpose=purposes[name]),
     )
     made = SimpleNamespace(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.diagnosis.answer import where
-from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER
+from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER, TELLING
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
@@ -18,6 +18,7 @@ from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, RINGS
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.delays import value_and_interval
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.search.trial import HIDDEN
 from tendonlab.diagnosis.search.workshop import NOTHING
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -138,7 +139,8 @@ def _on_the_refuted(search: Search) -> list[str]:
     num_alone = 0 if search.selected else 1
     chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
     against = "held-out ones are predicted worse with it, or hardly better" if search.fitter.floor.repeated else chance
-    mends = f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave"
+    telling = f"{100 * TELLING:.0f} % where left-out training ones gain {HIDDEN:.0f} nats"
+    mends = f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave ({telling})"
     beside = against if search.fitter.floor.repeated else mends
     reasons = [(search.refuted[:num_alone], against), (search.refuted[num_alone:], beside)]
     return [

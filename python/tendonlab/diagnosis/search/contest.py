@@ -43,6 +43,9 @@ NUM_HIDDEN = 4  # best candidates at believed values, or of those that gave way,
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none was ahead by less than 0.04 of that
 # Where laws have a shape: the others, where right, were behind by 1.7 nats at most, 192 times.
+FORM_OF_VARIANTS = (
+    0.05  # the same beside a variant of the first law: 17 right ones were 0.06 of its gain behind at most
+)
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 MATTERS_BESIDE = 0.06  # the same of a level of friction beside other friction: errors of forms removed up to 0.055
@@ -94,7 +97,7 @@ class Round:
         exact = TEMPERATURE * max([1.0, min((t.fitted.whitened_square for t in trials), default=1.0)])
         there = [t for t in trials if t.effect in established]
         of_shape = [FORM * t.evidence_gain for t in there if there[0].has_shape]
-        probability = probabilities(trials, established, bar, max([exact, *of_shape]), exact)
+        probability = probabilities(trials, established, bar, max([exact, *of_shape]), exact, _variants(trials))
         return cls(base.added, tuple(screened), tuple(trials), probability, accepted, established, failed)
 
 
@@ -270,15 +273,25 @@ def _reliever(fitter: Fitter, base: Fitted, trials: Sequence[Trial]) -> Trial | 
     return next((t for t in able if restores_belief(fitter.case, base, t.fitted)), None)
 
 
+def _variants(trials: Sequence[Trial]) -> frozenset[str]:
+    """Effects whose law is a variant of the first one's: it acts in the same element, combines in the same way and
+    reads the same. The form of either may err by more than they differ."""
+    if not trials or not trials[0].has_shape or trials[0].acts is None:
+        return frozenset()
+    return frozenset(t.effect for t in trials[1:] if t.acts == trials[0].acts)
+
+
 def probabilities(
     trials: Sequence[Trial],
     established: Set[str],
     bar: Bar,
     temperature: float,
     exact: float | None = None,
+    variants: Set[str] = frozenset(),
 ) -> dict[str | None, float]:
     """Probability of each effect, and of no further effect (None): softmax of evidence over a temperature; `exact`:
-    that of established effects whose law has no shape that could err, where it is another.
+    that of established effects whose law has no shape that could err, where it is another; `variants` of the first law
+    differ by its form alone.
 
     Raw evidence is over-confident: what an effect explains hangs on its form, and that of the rig is another. An effect
     that is not established ranks clearly behind None, and none counts more than the first one, to which it may have
@@ -291,6 +304,8 @@ def probabilities(
         gains[t.effect] = min(t.evidence_gain, limit)
         if exact is not None and t.effect in established and not t.has_shape:
             heat[t.effect] = exact
+        elif t.effect in established & variants:
+            heat[t.effect] = max(temperature, FORM_OF_VARIANTS * most)
     top = max(gains.values())
     weights = {name: float(np.exp((g - top) / heat.get(name, temperature))) for name, g in gains.items()}
     total = sum(weights.values())

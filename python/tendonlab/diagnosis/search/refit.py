@@ -13,6 +13,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import NEAR_FLOOR
 from tendonlab.fitting.problem import Fitter, pose
 from tendonlab.fitting.starts import annealed
+from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.system import System
 
 MAX_ITERATIONS = 45
@@ -20,6 +21,7 @@ SKETCH = 5  # iterations after which a fit that cannot catch up is abandoned
 CATCH_UP = 0.5  # share of the rival's evidence gain that a sketch must reach to be finished
 BEHIND = 50.0  # nats behind the same effect from another start, at which a sketch is abandoned
 STRAINED = 3.0  # sd between a tuned parameter and its prior mean, beyond which it compensates for something
+LESSENED = 0.1  # share of the start of an effect from which a fit begins again that led away from its base
 EXPLODED = "the derivatives of every fit are too large to tell anything"
 MOST = 700.0  # logarithm of the largest ratio of costs: far behind is behind
 
@@ -46,6 +48,8 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
     starts = candidate.starts[:1] if candidate.far_behind else candidate.starts
     for values in starts if candidate.simulated else ():
         attempt(values)
+    if best is not None and best.counted().evidence < base.counted().evidence:  # no fit of more parameters need lose
+        attempt(_lessened(base.system.info, candidate.starts[0]))
     hidden = strained(fitter, base) and not candidate.poor_when_believed
     # Near the floor a base that is strained may hide an effect by which it is believed, and by little else.
     if best is None or (hidden and (best.mean_square > NEAR_FLOOR or base.mean_square < NEAR_FLOOR)):
@@ -59,6 +63,12 @@ def refit(fitter: Fitter, base: Fitted, candidate: Screened, *, pace: float) -> 
     except (NumericalError, ParameterError):
         return best
     return settled if math.isfinite(settled.evidence) else best
+
+
+def _lessened(info: SystemInfo, start: Mapping[str, float]) -> dict[str, float]:
+    """The same start with little of the effect."""
+    amplitudes = {name for name in start if info.parameter(name).purpose == "amplitude"}
+    return {name: LESSENED * value if name in amplitudes else value for name, value in start.items()}
 
 
 def more_evident(best: Fitted | None, fit: Fitted) -> Fitted:

@@ -30,7 +30,8 @@ class Trial:
     """One refitted candidate against the model it extends: gains in nats, `doubt` that of the left-out gain, `lost`
     what experiments that are predicted worse lose, as a share of what the others gain; `is_nothing`: whether the effect
     may be 0 by its own interval although it gains; `has_shape`: whether its law may have another form on the rig, as
-    friction has and a bias or a delay has not."""
+    friction has and a bias or a delay has not; `acts`: the element of its law, how that combines with others, and what
+    it reads."""
 
     effect: str
     fitted: Fitted
@@ -40,6 +41,7 @@ class Trial:
     lost: float = 0.0
     is_nothing: bool = False
     has_shape: bool = True
+    acts: tuple[str, int, int] | None = None
 
     @classmethod
     def of(cls, effect: str, fitted: Fitted, base: Fitted) -> Trial:
@@ -53,8 +55,10 @@ class Trial:
         gains = np.append(gains, relieved) if relieved > 0.0 else gains
         lost = float(-np.minimum(gains, 0.0).sum() / max(np.maximum(gains, 0.0).sum(), 1.0 / MOST))
         nothing = evidence > DETECT.evidence and is_nothing(effect, fitted)
-        left_out, shape = float(np.sum(gains)), has_shape(effect, fitted.system.info)
-        return cls(effect, fitted, evidence, left_out, doubt(gains), lost, nothing, shape)
+        left_out, info = float(np.sum(gains)), fitted.system.info
+        law, shape = info.effect(effect), has_shape(effect, info)
+        acts = (law.element, law.roles, law.sees)
+        return cls(effect, fitted, evidence, left_out, doubt(gains), lost, nothing, shape, acts)
 
     @property
     def num_parameters(self) -> int:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from tendonlab import _core
+from tendonlab.diagnosis.search.amplitudes import with_told
 from tendonlab.diagnosis.search.bristles import trouble_with_bristles
 from tendonlab.diagnosis.search.delays import trouble_with_delays, with_twins_even
 from tendonlab.diagnosis.search.refit import refit, restarted
@@ -93,7 +94,7 @@ class Workshop:
         tried = [*([first] if first else []), *shown]
         trials = counted_alike([t for t in tried if isinstance(t, Trial)], base)
         failed = {t.effect: t.reason for t in tried if isinstance(t, Failed)}
-        trials = self._levelled(fitter, base, trials)
+        trials = [with_told(fitter, base, trial) for trial in self._levelled(fitter, base, trials)]
         holder = incumbent.effect if incumbent else None
         nothing = {t.effect: NOTHING for t in trials if t.is_nothing and t.effect != holder}
         left = with_twins_even(fitter.case, [t for t in trials if t.effect not in nothing])
