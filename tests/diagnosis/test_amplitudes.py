@@ -32,8 +32,8 @@ def model(left: float, delay: float = 0.004) -> Any:
     return SimpleNamespace(mean_square=left, system=System(delay), added=(EFFECT,), initial=())
 
 
-def told(left_by_half: float | None, *, gain: float = 500.0, nothing: bool = True) -> bool:
-    """Whether a trial that leaves 1 of the 3 that its base leaves counts, where half of its delay leaves this much."""
+def told(left_by_half: float | None, *, left: float = 1.0, gain: float = 500.0, nothing: bool = True) -> bool:
+    """Whether a trial that leaves so much of the 3 that its base leaves counts, where half of its delay leaves so much."""
 
     def fit(system: System, *, added: object, initial: object, solve: bool) -> Any:
         assert system.parameters[DELAY] == pytest.approx(0.002)
@@ -43,7 +43,7 @@ def told(left_by_half: float | None, *, gain: float = 500.0, nothing: bool = Tru
         return model(left_by_half)
 
     fitter: Any = SimpleNamespace(fit=fit)
-    trial = Trial(EFFECT, model(1.0), gain, left_out_gain=gain, doubt=0.0, is_nothing=nothing)
+    trial = Trial(EFFECT, model(left), gain, left_out_gain=gain, doubt=0.0, is_nothing=nothing)
     return not with_told(fitter, model(3.0), trial).is_nothing
 
 
@@ -55,9 +55,10 @@ def test_an_effect_of_which_half_is_too_little_is_there() -> None:
 
 def test_an_effect_that_gains_as_much_by_half_is_none() -> None:
     """A gate that opens one sample earlier by the least of it."""
-    assert not told(1.1)
+    assert not told(1.02)
 
 
 def test_a_small_gain_is_not_looked_at_and_an_effect_that_tells_stays() -> None:
     assert not told(3.0, gain=20.0)
+    assert not told(2.9, left=2.1)  # it explains less than half of the rest
     assert told(1.0, nothing=False)

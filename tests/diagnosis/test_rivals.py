@@ -232,15 +232,21 @@ def test_dropping_an_effect_keeps_the_values_of_all_else(fitter: Fitter, nominal
     assert left.parameters == {name: value for name, value in tuned.parameters.items() if name not in stribeck}
 
 
-def test_what_cannot_be_without_an_effect_goes_with_it(fitter: Fitter, nominal: Fitted) -> None:
-    """A bristle without dry friction ended diagnoses."""
+@pytest.mark.parametrize(
+    ("effect", "values"),
+    [
+        ("joint:presliding", {"joint_bristle_stiffness": 50.0, "joint_bristle_damping": 0.1}),
+        (STRIBECK, {"joint_static_excess": 0.1, "joint_stribeck_velocity": 0.07}),
+    ],
+)
+def test_what_cannot_be_without_an_effect_goes_with_it(
+    effect: str, values: dict[str, float], fitter: Fitter, nominal: Fitted
+) -> None:
+    """A bristle without dry friction ended diagnoses, and Stribeck friction alone took its place."""
     bare = replace(fitter.case, system=_without_dry_friction(nominal.system))
-    effects = {
-        "joint:presliding": {"joint_bristle_stiffness": 50.0, "joint_bristle_damping": 0.1},
-        "actuation:offset": {"actuation_offset": 0.02},
-    }
+    effects = {effect: values, "actuation:offset": {"actuation_offset": 0.02}}
     system = bare.system.with_effects({"joint:coulomb": {"joint_coulomb": 0.1}}).with_effects(effects)
-    model = replace(nominal, system=system, added=("joint:presliding", "joint:coulomb", "actuation:offset"))
+    model = replace(nominal, system=system, added=(effect, "joint:coulomb", "actuation:offset"))
     left = drop_effects(replace(fitter, case=bare), model, ["joint:coulomb"])
     assert set(left.effects) - set(bare.system.effects) == {"actuation:offset"}
     whole = drop_effects(replace(fitter, case=bare), model, [])  # in whatever order they were added

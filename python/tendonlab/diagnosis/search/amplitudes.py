@@ -7,17 +7,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tendonlab.diagnosis.search.trial import CLEAR, Trial
+from tendonlab.diagnosis.search.trial import CLEAR, Trial, explains_half
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
-LOST = 0.1  # share of the error that an effect removes, which half of it must leave for the data to tell its size
+LOST = 0.05  # share of the error that an effect removes, which half of it must leave for the data to tell its size
 
 
 def with_told(fitter: Fitter, base: Fitted, trial: Trial) -> Trial:
-    """The trial; not as one of nothing where half of its effect is clearly too little."""
-    if not trial.is_nothing or trial.evidence_gain < CLEAR.evidence:
+    """The trial; not as one of nothing where it explains half of the rest and half of its effect is too little: of 100
+    wrong effects whose intervals held 0 two explained as much, of seven right ones all."""
+    if not trial.is_nothing or trial.evidence_gain < CLEAR.evidence or not explains_half(base, trial.fitted):
         return trial
     return replace(trial, is_nothing=False) if _lost_by_half(fitter, base, trial) > LOST else trial
 

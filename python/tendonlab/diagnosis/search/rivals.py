@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from tendonlab.diagnosis.search.contest import Round, next_effect, promising
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import CATCH_UP
+from tendonlab.diagnosis.search.screen import can_be_added
 from tendonlab.diagnosis.search.swap import extended
 from tendonlab.diagnosis.search.trial import (
     DETECT,
@@ -25,6 +26,7 @@ from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
+from tendonlab.simulation.catalog import WHOLE
 from tendonlab.simulation.system import System
 
 NUM_RIVALS, MAX_EFFECTS = 3, 3
@@ -186,7 +188,7 @@ def _plainer(rival: Trial, holder: Trial) -> bool:
 
 def drop_effects(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> System:
     """The simulator of `model` without some of the effects that were added to it, nor any that cannot be without them,
-    as a bristle without dry friction."""
+    as a bristle or Stribeck friction without dry friction."""
     own = model.system.parameters
     nominal = fitter.case.system
     kept = [name for name in model.added if name not in effects]
@@ -198,6 +200,9 @@ def drop_effects(fitter: Fitter, model: Fitted, effects: Sequence[str]) -> Syste
 
 
 def _can_be_in(system: System, effect: str, values: Mapping[str, float]) -> bool:
+    law = system.info.effect(effect)
+    if not (law.roles & WHOLE or can_be_added(law, system)):
+        return False
     try:
         extended(system, {effect: values})
     except ParameterError:
