@@ -33,7 +33,7 @@ def model(left: float, delay: float = 0.004) -> Any:
 
 
 def told(left_by_half: float | None, *, left: float = 1.0, gain: float = 500.0, nothing: bool = True) -> bool:
-    """Whether a trial that leaves so much of the 3 that its base leaves counts, where half of its delay leaves so much."""
+    """Whether a trial that leaves `left` of the 3 that its base leaves counts, given what half of its delay leaves."""
 
     def fit(system: System, *, added: object, initial: object, solve: bool) -> Any:
         assert system.parameters[DELAY] == pytest.approx(0.002)
