@@ -16,8 +16,9 @@ LOST = 0.05  # share of the error that an effect removes, which half of it must 
 
 
 def with_told(fitter: Fitter, base: Fitted, trial: Trial) -> Trial:
-    """The trial; not as one of nothing where it explains half of the rest and half of its effect is too little: of about
-    a hundred wrong effects whose intervals held 0 four explained as much, of eight right ones six."""
+    """The trial; not as one of nothing where it explains half of the rest and half of its effect is too little.
+
+    Of about a hundred wrong effects whose intervals held 0 four explained as much, of eight right ones six."""
     if not trial.is_nothing or trial.evidence_gain < CLEAR.evidence or not explains_half(base, trial.fitted):
         return trial
     return replace(trial, is_nothing=False) if _lost_by_half(fitter, base, trial) > LOST else trial
