@@ -43,9 +43,7 @@ NUM_HIDDEN = 4  # best candidates at believed values, or of those that gave way,
 TEMPERATURE = 4.0  # tempering of evidence where the library is exact; it grows with what no model explains
 FORM = 0.01  # the same, of the most that an effect gains: of 52 right ones none was ahead by less than 0.04 of that
 # Where laws have a shape: the others, where right, were behind by 1.7 nats at most, 192 times.
-FORM_OF_VARIANTS = (
-    0.05  # the same beside a variant of the first law: 17 right ones were 0.06 of its gain behind at most
-)
+FORM_OF_VARIANTS = 0.05  # the same beside a variant of the first law: of 13 right ones ten were up to 0.06 behind
 UNCONFIRMED = 3.0  # temperatures by which an effect that left-out experiments do not confirm ranks behind none
 MATTERS = 0.05  # share of the whitened mean square that an effect must remove near the floor, or else
 MATTERS_BESIDE = 0.06  # the same of a level of friction beside other friction: errors of forms removed up to 0.055
