@@ -13,15 +13,8 @@ from tendonlab.errors import ParameterError, expected_one_of
 __all__ = ["EffectInfo", "ElementInfo", "InputInfo", "OutputInfo", "ParameterInfo", "PortInfo", "SystemInfo"]
 
 AXES = ("rotary", "linear")
-LEVEL, FACTOR, MEMORY, REFINES, WHOLE, SIGNAL, DRY = (
-    2,
-    4,
-    16,
-    32,
-    64,
-    256,
-    512,
-)  # roles of laws, as core/law.hpp numbers them
+LEVEL, FACTOR, MEMORY = 2, 4, 16  # roles of laws, as core/law.hpp numbers them
+REFINES, WHOLE, SIGNAL, DRY = 32, 64, 256, 512
 DEFAULTED = ("command_gain", "motor_inertia_share")  # roles of parameters that are typical unless stated
 DIMENSIONS = _core.dimensions()
 PORT_QUANTITIES = tuple(_core.port_quantities())  # that can be recorded of each port

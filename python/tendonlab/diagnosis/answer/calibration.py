@@ -30,7 +30,7 @@ class Tempering:
 
     def at(self, left: float) -> Tempering:
         """The same where tuning leaves a mean square of `left`, in units of the noise."""
-        lapse = self.lapse + self.near_noise / max(left, 1.0) ** 2
+        lapse = self.lapse + self.near_noise / max(1.0, left) ** 2
         return replace(self, lapse=min(lapse, 1.0 - self.missed), near_noise=0.0)
 
     def of(self, raw: Mapping[str, float]) -> dict[str, float]:
