@@ -32,7 +32,7 @@ def knowing(sealed: Path) -> Callable[[Path, Path], Sequence[str]]:
         effects = [dict(zip(("element", "effect"), name.split(":"), strict=True), probability=0.9) for name in there]
         report = {
             "verdict": verdict, "selected": list(there), "effects": effects, "seconds": 1.0,
-            "details": {"evidence": evidence}, "split": {"train": ["a", "b"]},
+            "details": {"evidence": evidence, "mean_square": {"refitted": 9.0}}, "split": {"train": ["a", "b"]},
         }  # fmt: skip
         return [sys.executable, "-c", f"open({str(out / REPORT)!r}, 'w').write({json.dumps(report)!r})"]
 

@@ -39,7 +39,8 @@ def report(
     return {
         "verdict": verdict, "selected": list(selected), "effects": entries, "indistinguishable": [list(tied)],
         "gap": {"joint_angle": {"noise_floor": 1.0, "refitted": 9.0, "with_effect": left}},
-        "shrinkage": shrunk, "details": {"evidence": evidence}, "split": {"train": ["a", "b"]}, "seconds": 1.0,
+        "shrinkage": shrunk, "details": {"evidence": evidence, "mean_square": {"refitted": 9.0}},
+        "split": {"train": ["a", "b"]}, "seconds": 1.0,
     }  # fmt: skip
 
 

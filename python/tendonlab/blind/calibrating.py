@@ -75,8 +75,9 @@ def _judged(sealed: Path, reports: Path) -> Iterable[Judged]:
         found: dict[str, Any] = json.loads(report.read_text(encoding="utf-8"))
         if "data_fault" in (found["verdict"], truth["verdict"]):
             continue
-        if "evidence" not in found["details"]:
-            raise ValueError(f"{report}: details.evidence is missing: expected a report of this version")
+        for name in ("evidence", "mean_square"):
+            if name not in found["details"]:
+                raise ValueError(f"{report}: details.{name} is missing: expected a report of this version")
         evidence = found["details"]["evidence"]
         yield Judged(
             system=truth["draw"]["system"],
