@@ -61,6 +61,13 @@ def test_a_held_out_experiment_that_gets_no_better_is_a_warning() -> None:
     assert notes.not_improved(gap, []) == []
 
 
+def test_an_established_effect_whose_interval_holds_0_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(notes, "is_nothing", lambda effect, _: effect == "sensor.cable_force_2:delay")
+    search: Any = SimpleNamespace(selected=("load:offset", "sensor.cable_force_2:delay"), final=None)
+    (said,) = notes._on_wide_intervals(search)
+    assert said.startswith("sensor.cable_force_2:delay was established although its 95 % interval holds 0.")
+
+
 def test_effects_that_no_fit_succeeded_with_or_that_were_not_tried_are_warnings(fitter: Fitter, twin_case: Any) -> None:
     fitted = fitter.fit(twin_case.system, max_iterations=1)
     contest = Round(

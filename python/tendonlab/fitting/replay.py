@@ -20,8 +20,8 @@ SAME_CLOCK = 0.05  # of the controller's period, by which the logs' may differ f
 DAMPING = 1.0  # ratio of the loop: critical
 CONTRADICTED = 0.1  # of the rms command, by which a stated controller may miss what was logged; right ones miss 0.014
 MEANS = 0.05  # of the rms command, by which a log may miss the means of a faster controller; means miss 0.001 to 0.04
-RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection; at most twice that,
 AT_LIMIT, MOSTLY = 0.99, 0.5  # of the limit, and share of samples there, from which on a loop is driven by its limits
+RESOLVED = 0.25  # of the sampling rate, rad/s per Hz: the largest bandwidth of an injection; at most twice that,
 NEEDED = 25.0  # rad/s: where logs are so slow that this is not reached, what no model explains would add up
 
 

@@ -18,7 +18,7 @@ from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, RINGS
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.delays import value_and_interval
 from tendonlab.diagnosis.search.select import Search
-from tendonlab.diagnosis.search.trial import HIDDEN
+from tendonlab.diagnosis.search.trial import HIDDEN, is_nothing
 from tendonlab.diagnosis.search.workshop import NOTHING
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -44,6 +44,7 @@ def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
         *_on_the_split(case),
         *_on_the_fits(search),
         *_on_the_failed(search),
+        *_on_wide_intervals(search),
         *_on_the_refuted(search),
     ]
 
@@ -132,6 +133,16 @@ def _on_the_failed(search: Search) -> list[str]:
     if names:  # before an effect was found, what it leaves out gains for others
         found.append(f"These gain evidence, but their 95 % intervals hold 0, so they do not count: {names}.")
     return found
+
+
+def _on_wide_intervals(search: Search) -> list[str]:
+    """Effects that were established although their intervals hold 0."""
+    return [
+        f"{effect} was established although its 95 % interval holds 0. The interval follows from slopes of the error. "
+        "Where the error changes in steps, the interval is too wide, and the evidence tells more."
+        for effect in search.selected
+        if is_nothing(effect, search.final)
+    ]
 
 
 def _on_the_refuted(search: Search) -> list[str]:

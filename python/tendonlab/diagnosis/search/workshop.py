@@ -95,7 +95,8 @@ class Workshop:
         trials = counted_alike([t for t in tried if isinstance(t, Trial)], base)
         failed = {t.effect: t.reason for t in tried if isinstance(t, Failed)}
         trials = self._levelled(fitter, base, trials)
-        trials = [*(with_told(fitter, base, leader) for leader in trials[:1]), *trials[1:]]
+        if trials:
+            trials[0] = with_told(fitter, base, trials[0])
         holder = incumbent.effect if incumbent else None
         nothing = {t.effect: NOTHING for t in trials if t.is_nothing and t.effect != holder}
         left = with_twins_even(fitter.case, [t for t in trials if t.effect not in nothing])
