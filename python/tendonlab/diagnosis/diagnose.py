@@ -39,7 +39,7 @@ NO_REPEAT = (
     "which follows the logged motion."
 )
 AT_ITS_LIMIT = (
-    "The controller commands its limit most of the time and then hears nothing of the sensor. So errors are those of "
+    "The controller commands its limit most of the time, where it does not react to the sensor. So errors are those of "
     "an injection, which follows the logged motion."
 )
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."

@@ -76,8 +76,8 @@ def opened(dataset: Dataset, system: System) -> Dataset:
 
 
 def is_mostly_at_its_limit(dataset: Dataset, system: System) -> bool:
-    """Whether the controller commanded its limit, one way or the other, in most samples of the training experiments: it
-    then hears little of the sensor, and a free run of its loop soon loses the phase of the logs."""
+    """Whether the controller commanded its limit, one way or the other, in most samples of the training experiments:
+    there it does not react to the sensor, and a free run of its loop soon loses the phase of the logs."""
     controller = dataset.controller
     if controller is None or not system.info.commanded or not np.isfinite(controller.limit):
         return False
