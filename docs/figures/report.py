@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
-WIDTH, HEIGHT, COLOURS = 1100, 1425, 160
+WIDTH, HEIGHT, COLOURS = 1100, 1425, 256
 
 
 def main(report: Path) -> None:
