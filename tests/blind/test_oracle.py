@@ -21,6 +21,12 @@ def report(with_effect: float, *, refitted: float = 5.0, floor: float = 1.0) -> 
     return {"verdict": "effect", "gap": {"joint_angle": angle}}
 
 
+REFUSED: dict[str, object] = {  # as a fault of the data: nothing was fitted
+    "verdict": "data_fault",
+    "gap": {"joint_angle": {"noise_floor": 1.0, "nominal": 9.0, "refitted": None, "with_effect": None}},
+}
+
+
 def write(folder: Path, **reports: dict[str, object]) -> Path:
     for name, of in reports.items():
         (folder / name).mkdir(parents=True)
@@ -31,10 +37,12 @@ def write(folder: Path, **reports: dict[str, object]) -> Path:
 def test_shares_are_of_what_the_told_diagnosis_reached_over_its_floor(tmp_path: Path) -> None:
     best = report(1.0)
     told = write(tmp_path / "told", same=best, half=best, none=best, crash=best, hopeless=report(6.0))
+    write(told, refused=best, both_refused=REFUSED)
     half = (1.0 + 0.25 * 24.0) ** 0.5  # gap: sqrt(rms² - 1), half of sqrt(24)
     own = {"same": report(1.0, floor=0.5), "half": report(half), "none": report(5.0), "hopeless": report(1.0)}
+    own |= {"refused": REFUSED, "both_refused": REFUSED}
     shares = shares_of_oracle(write(tmp_path / "reports", **own), told)
-    assert shares.to_dict() == pytest.approx({"same": 1.0, "half": 0.5, "none": 0.0, "crash": 0.0})
+    assert shares.to_dict() == pytest.approx({"same": 1.0, "half": 0.5, "none": 0.0, "crash": 0.0, "refused": 0.0})
 
 
 def test_only_cases_that_lack_known_effects_are_told(

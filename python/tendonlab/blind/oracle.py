@@ -45,7 +45,7 @@ def tell(
 def shares_of_oracle(reports: Path, told: Path) -> pd.Series:
     """By how much each case's held-out gap shrank, over what the diagnosis that was told reached, both over the floor
     of the latter; indexed by case. Left out: cases without a gap to shrink, and those where being told does not help.
-    A case without a report shrank nothing."""
+    A case without a report, or whose logs were refused, shrank nothing."""
     shares: dict[str, float] = {}
     for path in sorted(told.glob(f"*/{REPORT}")):
         name, best = path.parent.name, _read(path)
@@ -62,7 +62,10 @@ def _read(path: Path) -> Report:
 
 
 def _shrinkage(report: Report, best: Report) -> float:
-    """1 - gap with effects / gap of the refitted simulator, over the noise floor that `best` reached."""
+    """1 - gap with effects / gap of the refitted simulator, over the noise floor that `best` reached; 0 where either
+    was refused as a fault of the data, which fits nothing."""
+    if "data_fault" in (report["verdict"], best["verdict"]):
+        return 0.0
     rows = [(report["gap"].get(name), of["noise_floor"], of["refitted"]) for name, of in best["gap"].items()]
     after, floor, before = np.array([(own["with_effect"] if own else first, f, first) for own, f, first in rows]).T
     gaps = [np.sqrt(max(0.0, np.mean(np.square(level / floor)) - 1.0)) for level in (after, before)]
