@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from tendonlab.blind.commands import main
+from tendonlab.blind.oracle import shares_of_oracle
 from tendonlab.blind.results import Results, results
 from tendonlab.blind.results_page import PAGE, write
 from tendonlab.blind.runner import REPORT, VERDICTS
@@ -195,19 +196,43 @@ def test_the_page_holds_tables_figures_and_misses(folders: tuple[Path, Path], tm
         assert f"figures/{name}.svg" in text
 
 
+def told(folder: Path, *names: str) -> Path:
+    """A folder of diagnoses that were told the effects, which shrank the whole gap of these cases."""
+    best = {"verdict": "effect", "gap": {"joint_angle": {"noise_floor": 1.0, "refitted": 9.0, "with_effect": 1.0}}}
+    for name in names:
+        store(folder / name / REPORT, best)
+    return folder
+
+
+def store(path: Path, content: Any) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
+def shrunk(found: Results) -> list[tuple[int, int]]:
+    """Of how many rigs the gap shrank as far as it could, and how many there are: without and with repeats."""
+    counted = next(both for quantity, both in found.shares().items() if quantity.startswith("held-out gap shrunk"))
+    return [(one.hits, one.num) for one in counted]
+
+
 def test_the_gap_shrank_as_far_as_where_the_effects_were_told(folders: tuple[Path, Path], tmp_path: Path) -> None:
     """All cases but one shrink the gap as far as it goes; of the one that is not told nothing is known."""
     sealed, reports = folders
-    told = tmp_path / "told"
-    for name in ("strong", "beside", "partly"):
-        best = {"gap": {"joint_angle": {"noise_floor": 1.0, "refitted": 9.0, "with_effect": 1.0}}}
-        (told / name).mkdir(parents=True)
-        (told / name / REPORT).write_text(json.dumps(best), encoding="utf-8")
-    shares = results([folders], [(sealed, told)]).shares()
-    counted = next(both for quantity, both in shares.items() if quantity.startswith("held-out gap shrunk"))
-    assert [(one.hits, one.num) for one in counted] == [(2, 3), (0, 0)]
+    best = told(tmp_path / "told", "strong", "beside", "partly")
+    assert shrunk(results([folders], [(sealed, best)])) == [(2, 3), (0, 0)]
     with pytest.raises(ValueError, match="expected the truths of one of the series"):
-        results([folders], [(reports, told)])
+        results([folders], [(reports, best)])
+
+
+def test_logs_that_were_refused_shrink_no_gap(folders: tuple[Path, Path], tmp_path: Path) -> None:
+    """Refused by the diagnosis, its gap stays; refused by the one that was told as well, nothing could shrink."""
+    _, reports = folders
+    best = told(tmp_path / "told", "strong", "beside")
+    refused = {"verdict": "data_fault", "gap": {}}
+    store(reports / "strong" / REPORT, refused)
+    assert shares_of_oracle(reports, best).to_dict() == {"strong": 0.0, "beside": 1.0}
+    store(best / "strong" / REPORT, refused)
+    assert shares_of_oracle(reports, best).to_dict() == {"beside": 1.0}
 
 
 def test_the_command_takes_several_series(
