@@ -11,11 +11,12 @@ import pytest
 import tendonlab as tl
 from tendonlab.checking.finding import Finding
 from tendonlab.diagnosis import late as lateness
-from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
+from tendonlab.diagnosis.floor import renewed, under_noise_floor
 from tendonlab.diagnosis.search.rivals import contest_each_place
 from tendonlab.diagnosis.search.swap import extended
 from tendonlab.diagnosis.search.workshop import open_workshop
 from tendonlab.fitting.case import make_case
+from tendonlab.fitting.rough import rough_fit
 
 pytestmark = pytest.mark.slow
 RATE, DURATION, NOISE = 100.0, 8.0, 1e-4

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tendonlab.checking.aligned import confirmed
 from tendonlab.checking.clocks import clock_findings
 from tendonlab.checking.copies import copy_findings
 from tendonlab.checking.dead import dead_outputs
@@ -42,7 +43,7 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     """Say what looks wrong with the logs of `dataset` themselves: signs, scales and units, lags, stamps, outliers,
     limits, copies. `system`: the simulator (the dataset's own unless given), whose equation of motion must hold.
 
-    Nothing is simulated: it takes seconds. How it works: docs/method.md."""
+    Only an experiment that looks late is simulated: it takes seconds. How it works: docs/method.md."""
     require_dataset(dataset)
     system = simulator_of(dataset, system)
     marked = {} if system.info.steady else marks(dataset)
@@ -74,7 +75,8 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
     amplitudes = [name for name in own if name in system.parameters and system.info.parameter(name).amplitude]
     added = {name: NominalParameter(value=system.parameters[name]) for name in amplitudes}
     free = replace(dataset, parameters={**added, **dataset.parameters})
-    return tuple(finding for finding in _clocks(Equation(free, system), logs, marked)[0] if finding.blocks)
+    late, _ = _clocks(Equation(free, system), logs, marked)
+    return tuple(f for f in confirmed(late, dataset, system, is_tuned=True) if f.blocks)
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
@@ -87,7 +89,7 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
     if wrong:  # lags are judged once these are corrected
         return [*steps, *wrong], []
     late, notes = _clocks(equation, logs, marked)
-    return [*steps, *late], notes
+    return [*steps, *confirmed(late, equation.dataset, equation.system)], notes
 
 
 def _clocks(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:

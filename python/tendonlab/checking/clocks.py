@@ -21,6 +21,7 @@ MOST_LATE = 0.25  # share of the experiments of which some may lag and others le
 MIDDLE = 0.6745  # sd that half of all normal errors exceed
 ROUNDS = 3  # of common lag and scatter
 SHARES = (0.01, 100.0)  # of what the equations leave: what may look like a lag
+ALIGN = "align its channels to one clock, or leave the experiment out"
 BEHIND = "a diagnosis weighs the effect delay against others that look like a lag"
 AHEAD = "no delay explains this: either the inputs are stamped late, or the simulator lacks something that looks alike"
 LONG = 0.1  # s: no sensor or drive of a joint is later
@@ -86,7 +87,7 @@ def _one_late(
             seconds=seconds,
             blocks=True,
             detail=f"in {experiment}, {what} {_verb(seconds, alone or len(late) == 1)} the inputs by {_time(seconds)} "
-            "more than in the other experiments; align its channels to one clock, or leave the experiment out",
+            f"more than in the other experiments; {ALIGN}",
         )
 
 

@@ -15,7 +15,7 @@ from tendonlab.data import Dataset, require_dataset, simulator_of
 from tendonlab.diagnosis.answer.answer import answer
 from tendonlab.diagnosis.answer.confirm import confirmed
 from tendonlab.diagnosis.fault import data_fault
-from tendonlab.diagnosis.floor import renewed, rough_fit, under_noise_floor
+from tendonlab.diagnosis.floor import renewed, under_noise_floor
 from tendonlab.diagnosis.holding import straight_inputs
 from tendonlab.diagnosis.late import checked_again
 from tendonlab.diagnosis.search.select import Search, select_effects
@@ -27,6 +27,7 @@ from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import with_found_resolutions
 from tendonlab.fitting.problem import PLAIN, Fitter
 from tendonlab.fitting.replay import is_mostly_at_its_limit, opened
+from tendonlab.fitting.rough import rough_fit
 from tendonlab.fitting.thinning import thinned
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.seed import checked

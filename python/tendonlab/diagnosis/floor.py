@@ -12,21 +12,8 @@ from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case, fine_enough
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
-from tendonlab.fitting.noise import Floor, white
-from tendonlab.fitting.problem import Fitter, pose
-from tendonlab.fitting.starts import annealed
-
-ROUGH, NEARLY = 8, 1e-4  # iterations and tolerance of fits under the sensors' white noise
-
-
-def rough_fit(case: Case, cancel: _core.Cancel) -> Fitted:
-    """A fit under the sensors' white noise alone, before the floor is known. Where that drives a parameter to a bound,
-    under noise as large as the misfit: so little noise believes a wrong model against all that is stated."""
-    fitter = Fitter(case, white(case.noise), cancel)
-    fit = fitter.fit(case.system, max_iterations=ROUGH, tolerance=NEARLY)
-    problem = pose(case, fitter.floor, fit.system, initial=fit.initial)
-    fit = problem.reseated(fit, cancel, max_iterations=ROUGH, tolerance=NEARLY)
-    return annealed(pose(case, fitter.floor, case.system), cancel).linearise() if any(fit.at_bound) else fit
+from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.problem import Fitter
 
 
 def under_noise_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor, cancel: _core.Cancel) -> Fitter:

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from tendonlab.data import Dataset
-from tendonlab.diagnosis.floor import ROUGH
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
@@ -15,6 +14,7 @@ from tendonlab.fitting.case import Case, make_case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.noise import white
 from tendonlab.fitting.problem import Fitter
+from tendonlab.fitting.rough import ROUGH
 from tendonlab.fitting.thinning import thinned
 from tendonlab.simulation.prepare import Prepared
 from tendonlab.simulation.system import System

@@ -248,7 +248,7 @@ class Fitted:
         step[self._moving] = solved(self._moving_precision(blocks), np.asarray(pull)[self._moving])
         return step
 
-    @property
+    @cached_property
     def _moving(self) -> np.ndarray:
         """Coordinates that are not at a bound, as a mask."""
         return ~np.array(self.at_bound, dtype=bool)

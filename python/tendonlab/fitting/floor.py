@@ -23,6 +23,9 @@ AR_ORDER = 6
 NOTHING = 1e-6  # of rounding: readings that differ by less, but for a constant, repeat exactly
 LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatever was stated
 DIFFERENT = 0.5  # of the rms command, by which those of repeats may differ; such of stable loops differ by 0.35 at most
+ALIKE = (
+    0.5  # share of what a model makes repeats differ by (mean square), below which their logs differ by clearly less
+)
 LARGEST = 0.5  # plausible factor by which friction differs from run to run
 RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
@@ -120,16 +123,14 @@ def _do_repeat(case: Case, group: Sequence[int]) -> bool:
 
 def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[Sequence[int]]) -> Floor:
     members = [i for g in repeats for i in g]
-    seen = list(seen)
+    seen, differences = list(seen), []
     for g in repeats:
-        for i, kept in zip(g, _shared([case.experiments[i].time for i in g]), strict=True):
+        shared = _shared([case.experiments[i].time for i in g])
+        for i, kept in zip(g, shared, strict=True):
             own = seen[i]
             seen[i] = Sensitivities(own.residual[:, kept], own.friction[:, :, kept], own.initial[:, :, kept])
-    differences = [
-        (seen[i].residual - np.mean([seen[j].residual for j in g], axis=0)) * np.sqrt(len(g) / (len(g) - 1))
-        for g in repeats
-        for i in g
-    ]
+        logs = [case.prepared[i].measured[:, kept] for i, kept in zip(g, shared, strict=True)]
+        differences += _differences(case, [seen[i].residual for i in g], logs)
     pairs = [_clean(case, d, seen[i]) for i, d in zip(members, differences, strict=True)]
     ar: list[list[float]] = [[] for _ in case.noise]
     rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
@@ -145,6 +146,21 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
         sd[c] = max(innovation * max(1.0, rounding / shown) if differs else rounding, least)
         rms[c] = max(_rms([d[c] for d in differences]), rounding, least)
     return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
+
+
+def _differences(case: Case, residuals: Sequence[np.ndarray], logs: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Of each repeat to the mean of all, with the variance of one: of what a model leaves of them; of the logs where
+    these differ by clearly less. A model that lacks much may start each repeat from another place to make up for
+    that."""
+    from_mean = [[row - np.mean(rows, axis=0) for row in rows] for rows in (residuals, logs)]
+    left, logged = (np.nanmean(np.square(_in_noise(case, np.concatenate(rows, axis=1)))) for rows in from_mean)
+    scale = np.sqrt(len(logs) / (len(logs) - 1))
+    return [scale * row for row in from_mean[int(logged < ALIKE * left)]]
+
+
+def _in_noise(case: Case, rows: np.ndarray) -> np.ndarray:
+    """Rows of all outputs in units of the sensors' noise, of what was measured."""
+    return np.asarray(rows[case.measured] / case.noise[case.measured, None])
 
 
 def _shared(times: Sequence[np.ndarray]) -> list[np.ndarray]:

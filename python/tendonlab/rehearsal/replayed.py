@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.diagnosis.floor import rough_fit
 from tendonlab.fitting.case import make_case
 from tendonlab.fitting.floor import estimate, remaining, sensitivities
 from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.rough import rough_fit
 from tendonlab.rehearsal.rig import SimulatedRig
 from tendonlab.rehearsal.sensors import Noise, Sensor, at_the_fit
 

@@ -12,12 +12,13 @@ import numpy as np
 from tendonlab import _core
 from tendonlab.data import Dataset
 from tendonlab.diagnosis.diagnose import best_model
-from tendonlab.diagnosis.floor import first_floor, rough_fit
+from tendonlab.diagnosis.floor import first_floor
 from tendonlab.errors import DatasetError, NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.floor import Sensitivities, remaining, sensitivities
 from tendonlab.fitting.noise import BURN_IN, RUN_TO_RUN, Floor, drawn, remembered, without_rounding
+from tendonlab.fitting.rough import rough_fit
 from tendonlab.simulation.reading import noise_sd
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from tendonlab.report.words import capital, changed_friction, phrases
 if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
 
+FAR = 2.0  # noise floors of held-out error from which on effects leave something to be told
 ON_FLOOR = 1.1  # noise floors of held-out error that read as the floor itself
 WORSE = -0.05  # shrinkage below which the gap has grown, and not by rounding
 EVEN = 0.5  # probability below which what was selected is not called established
@@ -46,9 +47,10 @@ def certainty(diagnosis: Diagnosis) -> float:
 
 def _claim(diagnosis: Diagnosis) -> str:
     """What `certainty` is the probability of, where effects were selected: theirs, or that of any named beside them."""
+    rank = "main" if _floors(diagnosis, "with_effect") >= FAR else "whole"
     if any(_twins(diagnosis, own) for own in diagnosis.selected):
-        return "that one of these explanations is the whole one"
-    return "that this is the whole explanation"
+        return f"that one of these explanations is the {rank} one"
+    return f"that this is the {rank} explanation"
 
 
 def _twins(diagnosis: Diagnosis, chosen: str) -> list[str]:
@@ -117,7 +119,16 @@ def _effect(diagnosis: Diagnosis) -> str:
             f"experiments show {them}; the held-out ones are at the noise floor without {them} as well."
         )
     opening = "An unmodelled effect explains" if one else f"{how_many} unmodelled effects explain"
-    return f"{opening} the gap: {said}{_shrinks(diagnosis, 'from_refitted', f'Adding {them}')}"
+    return f"{opening} the gap: {said}{_shrinks(diagnosis, 'from_refitted', f'Adding {them}')}{_left(diagnosis)}"
+
+
+def _left(diagnosis: Diagnosis) -> str:
+    """What the selected effects leave, where that is far above the noise floor."""
+    floors = _floors(diagnosis, "with_effect")
+    if floors < FAR:
+        return ""
+    form = "another form of this effect" if len(diagnosis.selected) == 1 else "another form of one of these effects"
+    return f" What is left is {floors:.2g} times the noise floor: {form}, or a smaller effect, is still missing."
 
 
 def _ties(diagnosis: Diagnosis) -> str:

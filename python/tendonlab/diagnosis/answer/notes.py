@@ -66,9 +66,9 @@ def _on_the_floor(case: Case, floor: Floor) -> list[str]:
         marked = len(set(labels)) < len(labels)
         why = "Runs marked as repeats do not repeat: they share few samples, or their commands differ by half and more."
         return [why] * marked + [
-            "No repeated runs, so the noise floor is assumed (sensor noise plus "
-            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % friction scatter; at most what the simulator with the effects named "
-            "leaves). Weaker effects may hide below. Repeat one run to measure the floor."
+            "No repeated runs, so the noise floor is assumed: sensor noise, and "
+            f"{100 * RUN_TO_RUN_UNKNOWN:.0f} % friction scatter as far as the simulator with the effects named leaves "
+            "that much. Weaker effects may hide below. Repeat one run to measure the floor."
         ]
     if floor.tau > UNSTEADY:
         return [f"Friction differs by {100 * floor.tau:.1f} % from run to run, which limits what can be said."]

@@ -44,7 +44,9 @@ def _summary(diagnosis: Diagnosis) -> str:
     if signals := diagnosis.where["signals"]:
         first = max(signals, key=lambda entry: entry["share"])
         if first["share"] == 0.0:
-            return " ".join([*sentences, "On held-out experiments no output errs beyond its noise floor."])
+            is_unknown = diagnosis.verdict == "unknown_effect"
+            elsewhere = " What is missing shows in the training experiments." if is_unknown else ""
+            return " ".join([*sentences, f"On held-out experiments no output errs beyond its noise floor.{elsewhere}"])
         largest.append(f"in the {words.words(first['signal'])} ({_of_excess(first['share'])})")
     if clear := [r for r in diagnosis.where["regimes"] if r.get("p_value") is not None and r["p_value"] <= CLEAR]:
         first = max(clear, key=lambda entry: entry["share"] or 0.0)
