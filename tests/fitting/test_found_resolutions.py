@@ -10,6 +10,7 @@ import pytest
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
 from tendonlab.fitting.noise import with_found_resolutions
+from tendonlab.simulation.reading import common_step
 
 
 @pytest.fixture(scope="module")
@@ -41,3 +42,17 @@ def test_the_step_of_few_runs_does_not(rig: tl.Dataset) -> None:
 def test_what_is_stated_stays(rig: tl.Dataset) -> None:
     stated = replace(rig, signals={**rig.signals, "joint_angle": replace(rig.signals["joint_angle"], resolution=1e-3)})
     assert with_found_resolutions(stated).signals["joint_angle"].resolution == 1e-3
+
+
+def test_the_step_of_a_coarse_sensor_in_fast_motion_is_found(rig: tl.Dataset) -> None:
+    """Hardly a reading equals the one before, and the file has few digits: all changes are multiples all the same."""
+    step = 2.0 * np.pi / 2048
+    time = np.arange(0.0, 4.0, 0.004)
+    records = [np.round(np.sin(w * time) / step) * step for w in (2.0, 5.0, 9.0)]
+    printed = [np.round(np.rad2deg(record), 4) for record in records]
+    assert common_step(printed) == pytest.approx(np.rad2deg(step), rel=1e-3)
+    noisy = [record + step * np.random.default_rng(0).standard_normal(len(time)) for record in records]
+    assert common_step(noisy) == 0.0
+    assert common_step([*printed, np.rad2deg(noisy[0])]) == 0.0
+    assert common_step([np.round(record, 5) for record in noisy]) == 0.0  # the digits of the file, far below the noise
+    assert common_step([]) == 0.0

@@ -11,6 +11,8 @@ REPEATED = 0.05  # share of samples equal to the one before, from which on readi
 ALL_NOISE = 1.3  # times the white part of records, within which all of them is noise
 FEWEST, SAME_STEP = 10, 0.01  # samples of a record that may show a step; share by which steps of records may differ
 SMALL, USUAL = 5.5, 0.15  # steps, up to which changes show whether all are whole; share of changes that are so small
+LONG = 50.0  # steps, up to which changes are looked at where readings move on by more than a step at every sample
+ROUGH = 0.5  # share of the noise of a record that such a step must make up to matter
 WHOLE, MOSTLY = 0.1, 0.9  # of a step, from whole ones; share of the small changes that must be so near
 
 
@@ -65,11 +67,27 @@ def smallest_change(values: np.ndarray) -> float:
 
 
 def common_step(records: Sequence[np.ndarray]) -> float:
-    """The step that the readings of one sensor were rounded to, as more than half of its records that move show it; 0
-    where they do not."""
+    """The step that the readings of one sensor were rounded to, as more than half of its records that move show it, or
+    as all changes in all of them are multiples of it; 0 where they do not."""
     moving = [r for r in records if len(r) > FEWEST and np.nanstd(r) > 0]
     steps = np.array([rounding_step(r) for r in moving])
     if 2 * np.count_nonzero(steps) <= len(steps):
-        return 0.0
+        return _coarse_step(moving)
     middle = float(np.median(steps[steps > 0]))
     return middle if 2 * np.count_nonzero(np.abs(steps - middle) < SAME_STEP * middle) > len(steps) else 0.0
+
+
+def _coarse_step(records: Sequence[np.ndarray]) -> float:
+    """The step of which all changes of all records are multiples, where rounding to it is much of their noise; 0 where
+    there is none. Of changes that are rounded to nothing a fifth would look like multiples."""
+    steps = [step for r in records if (step := smallest_change(r)) > 0.0]
+    noise = float(np.median([white_noise_sd(r) for r in records])) if records else 0.0
+    if not steps or min(steps) < ROUGH * noise * np.sqrt(12.0):
+        return 0.0
+    step = min(steps)
+    for record in records:
+        multiples = np.abs(np.diff(record)) / step
+        multiples = multiples[(multiples > 0.5) & (multiples < LONG)]
+        if len(multiples) and np.mean(np.abs(multiples - np.round(multiples)) < WHOLE) < MOSTLY:
+            return 0.0
+    return step
