@@ -14,6 +14,7 @@ from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset, simulator_of
 from tendonlab.diagnosis.answer.answer import answer
 from tendonlab.diagnosis.answer.confirm import confirmed
+from tendonlab.diagnosis.discrepancy import RINGS, patterns
 from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, under_noise_floor
 from tendonlab.diagnosis.holding import straight_inputs
@@ -43,6 +44,10 @@ AT_ITS_LIMIT = (
     "The controller commands its limit most of the time, where it does not react to the sensor. So errors are those of "
     "an injection, which follows the logged motion."
 )
+RINGING = (
+    "What every model leaves of the closed loop rings, as a lightly damped loop does that noise shakes. So errors are "
+    "those of an injection, which follows the logged motion."
+)
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
 log = logging.getLogger("tendonlab")
@@ -58,6 +63,13 @@ class _Outcome(NamedTuple):
     loop: Case | None
     warnings: tuple[str, ...] = ()
     in_parts: bool = False
+
+    @property
+    def rings(self) -> bool:
+        """Whether what the last model leaves rings, where nothing repeats: with repeats the floor holds what noise
+        excites."""
+        fitter, final = self.search.fitter, self.search.final
+        return not fitter.floor.repeated and patterns(fitter.case, final).ringing >= RINGS
 
 
 @with_one_blas_thread
@@ -125,12 +137,22 @@ def _search(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
 
 
 def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
-    """A search of the thinned logs under the noise floor that they show."""
+    """A search of the thinned logs in the loop that tells most: their controller's, or without where that is driven by
+    its limit, or where all that is left of it rings."""
     few = thinned(dataset, system)
     loop, trouble = _loop(dataset, system) if few.controller is not dataset.controller else (None, ())
     few = replace(few, warnings=(*few.warnings, *trouble))
     if is_mostly_at_its_limit(few, system):
         few = _opened(few, system, AT_ITS_LIMIT)
+    outcome = _weighed(few, loop, system, shop)
+    if outcome.rings and (logged := _opened(few, system, RINGING)) is not few:
+        again = _weighed(logged, loop, system, shop)
+        return outcome if again.rings else again
+    return outcome
+
+
+def _weighed(few: Dataset, loop: Case | None, system: System, shop: Workshop) -> _Outcome:
+    """A search under the noise floor that the logs show; in an injection where the closed loop does not repeat."""
     rough, fitter = _under_floor(make_case(few, system), shop)
     if fitter.floor.tau > UNREPEATED and (logged := _opened(few, system, NO_REPEAT)) is not few:
         rough, fitter = _under_floor(make_case(logged, system), shop)
