@@ -49,3 +49,4 @@ def test_what_cannot_be_simulated_stays_as_it_was_found(right: Dataset, monkeypa
 
     monkeypatch.setattr(aligned, "rough_fit", fails)
     assert confirmed([LATE], right, right.system()) == [LATE]
+    assert not confirmed([LATE], right, right.system(), if_unable=False)[0].blocks

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tendonlab.checking.clocks import _common, clock_findings
+from tendonlab.checking.clocks import STRIKING, _common, clock_findings, striking_findings
 from tendonlab.checking.finding import Finding
 from tendonlab.checking.lags import Lags
 
@@ -52,6 +52,16 @@ def test_one_experiment_that_lags_blocks(seconds: float, verb: str) -> None:
     assert found.seconds == pytest.approx(seconds)
     assert found.alternatives == ("motor_torque", "angle_1")
     assert f"angle_1 {verb} the inputs by 50 ms more" in found.detail
+
+
+@pytest.mark.parametrize(("worth", "is_striking"), [(0.9 * STRIKING, False), (1.1 * STRIKING, True)])
+def test_a_lag_that_is_worth_much_is_told_to_the_simulator_whatever_suits_as_well(
+    worth: float, is_striking: bool
+) -> None:
+    late, nothing = np.array([[0.0, 0.0, 0.05, 0.0, 0.0]]), np.zeros(5)
+    lags = lags_of(("angle",), late, nothing, weight=worth / 0.05)
+    assert clock_findings(lags, NAMES, ["motor_torque"], STEP) == []
+    assert [f.experiment for f in striking_findings(lags, NAMES, ["motor_torque"], STEP)] == ["c"] * is_striking
 
 
 def test_a_lag_that_suits_the_experiment_no_better_is_none() -> None:

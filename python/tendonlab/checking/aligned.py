@@ -27,16 +27,18 @@ NUM_FITTED = 4  # other experiments to which the simulator is fitted first
 REFUTED = "but the simulator follows them no better without that lag: more likely friction in slow motion looks alike"
 
 
-def confirmed(found: Sequence[Finding], dataset: Dataset, system: System, *, is_tuned: bool = False) -> list[Finding]:
+def confirmed(
+    found: Sequence[Finding], dataset: Dataset, system: System, *, is_tuned: bool = False, if_unable: bool = True
+) -> list[Finding]:
     """The findings, where a late experiment blocks only if the simulator follows it better on one clock. `is_tuned`:
-    whether the `system` has been fitted; else it is fitted roughly to other experiments. What cannot be simulated stays
-    as it was found."""
+    whether the `system` has been fitted; else it is fitted roughly to other experiments. `if_unable`: whether what
+    cannot be simulated blocks."""
     if not any(map(_is_late, found)):
         return list(found)
     judged: list[Finding] = []
     for name, group in groupby(found, _late_experiment):
         of = list(group)
-        if name and not _is_mended(of, name, dataset, system, is_tuned):
+        if name and not _is_mended(of, name, dataset, system, is_tuned=is_tuned, if_unable=if_unable):
             of = [replace(f, blocks=False, detail=f.detail.replace(ALIGN, REFUTED)) for f in of]
         judged += of
     return judged
@@ -50,7 +52,9 @@ def _late_experiment(finding: Finding) -> str:
     return str(finding.experiment) if _is_late(finding) else ""
 
 
-def _is_mended(late: Sequence[Finding], name: str, dataset: Dataset, system: System, is_tuned: bool) -> bool:
+def _is_mended(
+    late: Sequence[Finding], name: str, dataset: Dataset, system: System, *, is_tuned: bool, if_unable: bool
+) -> bool:
     """Whether the simulator leaves much less of the experiment `name` without the lags that were found in it."""
     try:
         few = thinned(dataset, system)
@@ -58,7 +62,7 @@ def _is_mended(late: Sequence[Finding], name: str, dataset: Dataset, system: Sys
         model = system if is_tuned else rough_fit(case, _core.Cancel()).system
         as_logged, aligned = (_error(case.playing(e), model) for e in _on_two_clocks(few[name], late, case))
     except (DatasetError, NumericalError, ParameterError):
-        return True
+        return if_unable
     return aligned < MENDED * as_logged
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.checking.aligned import confirmed
-from tendonlab.checking.clocks import clock_findings
+from tendonlab.checking.clocks import clock_findings, striking_findings
 from tendonlab.checking.copies import copy_findings
 from tendonlab.checking.dead import dead_outputs
 from tendonlab.checking.driven import free_runs
@@ -75,8 +75,8 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
     amplitudes = [name for name in own if name in system.parameters and system.info.parameter(name).amplitude]
     added = {name: NominalParameter(value=system.parameters[name]) for name in amplitudes}
     free = replace(dataset, parameters={**added, **dataset.parameters})
-    late, _ = _clocks(Equation(free, system), logs, marked)
-    return tuple(f for f in confirmed(late, dataset, system, is_tuned=True) if f.blocks)
+    late, _ = _clocks(Equation(free, system), logs, marked, is_tuned=True)
+    return tuple(f for f in late if f.blocks)
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
@@ -89,11 +89,14 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
     if wrong:  # lags are judged once these are corrected
         return [*steps, *wrong], []
     late, notes = _clocks(equation, logs, marked)
-    return [*steps, *confirmed(late, equation.dataset, equation.system)], notes
+    return [*steps, *late], notes
 
 
-def _clocks(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
-    """Lags, of the experiments that a motor drives."""
+def _clocks(
+    equation: Equation, logs: Logs, marked: Marks, *, is_tuned: bool = False
+) -> tuple[list[Finding], list[str]]:
+    """Lags, of the experiments that a motor drives, as a simulation confirms them. `is_tuned`: whether the simulator
+    was fitted."""
     if off := free_runs(equation, logs):
         driven = tuple(e for k, e in enumerate(equation.dataset) if k not in off)
         equation = Equation(replace(equation.dataset, experiments=driven), equation.system)
@@ -105,4 +108,10 @@ def _clocks(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]
     step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))
-    return clock_findings(late, [e.name for e in dataset.experiments], dataset.inputs, step), []
+    given = late, [e.name for e in dataset.experiments], dataset.inputs, step
+    found = confirmed(clock_findings(*given), dataset, equation.system, is_tuned=is_tuned)
+    if not any(f.blocks for f in found):
+        striking = striking_findings(*given)
+        striking = confirmed(striking, dataset, equation.system, is_tuned=is_tuned, if_unable=False)
+        found = [*(f for f in striking if f.blocks), *found]
+    return found, []

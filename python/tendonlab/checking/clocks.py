@@ -14,6 +14,7 @@ APART = 6.0  # sd, of the lag and of its scatter among experiments, by which one
 LEAST = 1.5  # samples by which an experiment must lag the others
 LEAST_SHARED = 0.25  # of a sample, of a lag that all share
 MATTERS = 6.0  # levels of the residual that the lag of one experiment must be worth: presliding may be worth 4
+STRIKING = 50.0  # the same where nothing but a simulation confirms it: true ones were worth 63 and 190
 SUITS = 50.0  # nats by which its own lags must suit an experiment better than those of the others, or they and a scan
 SCANNED, ALONE = 20.0, 0.1  # nats of a scan that make an experiment late, and share of them that no other may reach
 STANDS_OUT = 2.0  # times the nats of any experiment that is not late: what the simulator lacks suits lags in all
@@ -33,16 +34,9 @@ UNKNOWN = 10.0  # s: a lag of which nothing is known
 
 def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step: float) -> list[Finding]:
     """What the lags of the outputs in the experiments `names` say; `step`: from sample to sample, s."""
-    known = np.hypot(lags.sd, RESOLVED * step)
-    levels = np.fmin(1.0 / np.fmax(lags.weight, 1e-300), UNKNOWN)
-    shared, scatter = (np.array(x) for x in zip(*map(_common, lags.seconds, known, levels), strict=True))
-    total = np.hypot(known, scatter[:, None] * levels)
+    shared, total, late = _apart(lags, step)
     away = lags.seconds - shared[:, None]
-    # What the simulator lacks delays all outputs: an experiment is apart where even the largest scatter of any explains
-    # nothing.
-    apart = APART * np.hypot(known, np.max(scatter) * levels)
-    late = (np.abs(away) > apart) & (np.abs(away) > LEAST * step) & (np.abs(away) * lags.weight > MATTERS)
-    late &= lags.gain > SUITS
+    late &= (np.abs(away) * lags.weight > MATTERS) & (lags.gain > SUITS)
     others = lags.gain[~late.any(axis=0) & np.isfinite(lags.gain)]
     late &= lags.gain > STANDS_OUT * np.max(others, initial=0.0)
     late |= _late_alone(lags.scanned) & _far_off(away) & (lags.scanned + lags.gain > SUITS)
@@ -50,6 +44,29 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
         late[:] = False  # so many clocks do not go wrong both ways: it is something that the simulator lacks
     found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
     return [*found, *_all_late(lags, inputs, shared, total, step)]
+
+
+def striking_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step: float) -> list[Finding]:
+    """The same of single experiments whose lag is worth so much that a simulation should tell it, though by the
+    equation friction, or a map over the place, suits the experiment as well."""
+    shared, _, late = _apart(lags, step)
+    away = lags.seconds - shared[:, None]
+    late &= np.abs(away) * lags.weight > STRIKING
+    return [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
+
+
+def _apart(lags: Lags, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each output the lag that most experiments share; how well the lag of each experiment is known beside that (s);
+    and whether that lag is another one."""
+    known = np.hypot(lags.sd, RESOLVED * step)
+    levels = np.fmin(1.0 / np.fmax(lags.weight, 1e-300), UNKNOWN)
+    shared, scatter = (np.array(x) for x in zip(*map(_common, lags.seconds, known, levels), strict=True))
+    total = np.hypot(known, scatter[:, None] * levels)
+    away = np.abs(lags.seconds - shared[:, None])
+    # What the simulator lacks delays all outputs: an experiment is apart where even the largest scatter of any explains
+    # nothing.
+    apart = APART * np.hypot(known, np.max(scatter) * levels)
+    return shared, total, (away > apart) & (away > LEAST * step)
 
 
 def _late_alone(nats: np.ndarray) -> np.ndarray:
