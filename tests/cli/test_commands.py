@@ -12,7 +12,7 @@ import pytest
 
 import tendonlab as tl
 from interrupting import small_tasks_and_ctrl_c
-from tendonlab.checking.finding import Check
+from tendonlab.checking.finding import Check, Finding
 from tendonlab.cli import demo
 from tendonlab.cli.commands import main
 from tendonlab.cli.text import check_text
@@ -298,6 +298,14 @@ def test_check_says_what_reading_the_logs_assumed() -> None:
     assert "Assumed\n  - inputs that were not logged are taken as 0" in check_text(
         found, ["inputs that were not logged are taken as 0"]
     )
+
+
+def test_check_says_once_what_experiments_share() -> None:
+    def gap(experiment: str, detail: str = "2 gaps in time") -> Finding:
+        return Finding(problem="sampling", detail=detail, experiment=experiment)
+
+    text = check_text(Check(dataset="rig", findings=(gap("a"), gap("b", "3 gaps in time"), gap("c"), gap("d"))))
+    assert "  - sampling (a; alike in c, d): 2 gaps in time\n  - sampling (b): 3 gaps in time" in text
 
 
 def test_check_prints_what_it_found_and_writes_it(tmp_path: Path, capsys: Printed) -> None:

@@ -223,6 +223,19 @@ def test_without_a_split_the_library_splits_and_says_so(draft, write):
     assert "no experiment is held out" in alone.warnings[0]
 
 
+def test_a_misspelt_split_is_named(draft, write):
+    draft.toml["experiments"][0]["spilt"] = draft.toml["experiments"][0].pop("split")
+    with pytest.raises(DatasetError, match="spilt"):
+        load(write(draft))
+
+
+@pytest.mark.parametrize("unit", ["turn", "rev"])
+def test_an_angle_may_be_logged_in_turns(unit, draft, write):
+    draft.toml["signals"]["joint_angle"]["unit"] = unit
+    logged = draft.frames["one.csv"]["q"]
+    assert np.allclose(load(write(draft))["one"].data["joint_angle"], 2.0 * np.pi * logged, rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("repeats", "num_test"),
     [([None], 0), ([None] * 2, 1), ([None] * 10, 3), (["A", "A"], 1), (["A", "B"], 1), (["A", "A", "B", "B"], 1)],

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,3 +57,24 @@ def test_such_logs_are_opened_with_a_warning_where_they_hold_the_command(
     opened = steps._opened(dataset, dataset.system(), steps.AT_ITS_LIMIT)
     assert opened.controller is None
     assert opened.warnings == (*dataset.warnings, steps.AT_ITS_LIMIT)
+
+
+@pytest.mark.parametrize("still_rings", [False, True])
+def test_a_loop_that_rings_is_weighed_by_its_logged_command_where_that_stills_it(
+    still_rings: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dataset = limited(tmp_path, 0.1)
+    weighed: list[tl.Dataset] = []
+
+    def weigh(few: tl.Dataset, *_: object) -> SimpleNamespace:
+        weighed.append(few)
+        return SimpleNamespace(dataset=few, rings=few.controller is not None or still_rings)
+
+    monkeypatch.setattr(steps, "_weighed", weigh)
+    monkeypatch.setattr(steps, "thinned", lambda dataset, _: dataset)
+    monkeypatch.setattr(steps, "opened", lambda dataset, _: replace(dataset, controller=None))
+    nobody: Any = None
+    outcome: Any = steps._searched(dataset, dataset.system(), nobody)
+    assert [few.controller for few in weighed] == [dataset.controller, None]
+    assert steps.RINGING in weighed[1].warnings
+    assert outcome.dataset is weighed[0 if still_rings else 1]

@@ -183,7 +183,11 @@ def test_what_may_imitate_the_unknown_is_not_called_established(with_effect: Dia
     partly = replace(with_effect, verdict="unknown_effect", explained=0.32)
     assert "Stribeck friction at the joint is established and explains 32 % of" in partly.sentence
     assert "and held-out experiments are at the noise floor" in replace(partly, explained=None).sentence
-    assert "but explains nothing of the excess error" in replace(partly, explained=0.0).sentence
+    hardly = "A gap remains after tuning that no effect of the library explains. Stribeck friction at the joint is"
+    for explained, share in ((0.0, "nothing"), (0.01, "1 %")):
+        told = replace(partly, explained=explained).sentence
+        assert told.startswith(hardly)
+        assert f"but explains {share} of the excess error" in told
     assert replace(partly, effects=doubtful).sentence.startswith(
         "The library explains only a part of the gap. Stribeck friction at the joint helps on the training experiments "
         "and explains 32 % of the excess error; it may only imitate what is unknown, so compare the fitted values "

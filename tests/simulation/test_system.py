@@ -31,7 +31,10 @@ PUSHED = pd.DataFrame({"motor_torque": 0.4 * np.sin(6.0 * TIME)}, index=pd.Index
             {"effects": ("joint:viscous", "joint:presliding")},
             "joint:presliding shapes dry friction, and none is there: add one of joint:coulomb",
         ),
-        ({"effects": ("joint:coulomb",)}, "viscous = 0.03: no parameter of rigid_joint with its effects"),
+        (
+            {"effects": ("joint:coulomb",)},
+            "viscous = 0.03: parameter of joint:viscous, which this rigid_joint lacks; expected that effect",
+        ),
         ({"parameters": {**VALUES, "inertia": -1.0}}, r"inertia = -1.0: expected a value in \[1e-12, inf\) kg\*m\^2"),
         ({"parameters": {**VALUES, "inertia": np.nan}}, "inertia = nan: expected a value in"),
         (

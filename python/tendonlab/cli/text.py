@@ -70,7 +70,7 @@ def check_text(found: Check, assumed: Sequence[str] = ()) -> str:
     """What the check of the logs found: first what must be corrected, then what a diagnosis copes with, and what was
     `assumed` when they were read."""
     blocking = [_finding(f) for f in found.findings if f.blocks]
-    others = [_finding(f) for f in found.findings if not f.blocks]
+    others = _together([f for f in found.findings if not f.blocks])
     verdict = (
         "The logs must be corrected before a diagnosis." if blocking else "Nothing in the logs forbids a diagnosis."
     )
@@ -84,8 +84,17 @@ def check_text(found: Check, assumed: Sequence[str] = ()) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _finding(finding: Finding) -> str:
-    place = f" ({finding.place})" if finding.place else ""
+def _together(findings: Sequence[Finding]) -> list[str]:
+    """The findings, each detail once, with the experiments that share it."""
+    alike: dict[tuple[str, str, str | None], list[Finding]] = {}
+    for finding in findings:
+        alike.setdefault((finding.problem, finding.detail, finding.signal), []).append(finding)
+    return [_finding(first, [str(f.experiment) for f in more]) for first, *more in alike.values()]
+
+
+def _finding(finding: Finding, others: Sequence[str] = ()) -> str:
+    parts = [part for part in (finding.place, f"alike in {', '.join(others)}" if others else "") if part]
+    place = f" ({'; '.join(parts)})" if parts else ""
     return f"{finding.problem}{place}: {finding.detail}"
 
 

@@ -57,8 +57,8 @@ def read_time(top: Table) -> tuple[str, str]:
 def read_experiments(top: Table, context: Context) -> tuple[Experiment, ...]:
     """Every experiment with its samples, split into train and test. Raises DatasetError at the first violation."""
     tables = top.tables("experiments")
-    splits = _splits(tables)
     _check_names_and_files(tables)
+    splits = _splits(tables)
     return tuple(_read_experiment(table, split, context) for table, split in zip(tables, splits, strict=True))
 
 

@@ -20,7 +20,9 @@ COMMAND_UNITS = ("A", "V", "1")
 def _registry() -> pint.UnitRegistry[float]:
     import pint  # takes half a second, so only where a unit is met
 
-    return pint.UnitRegistry()
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+    registry.define("@alias turn = rev")  # pint knows revolution, cycle and rpm
+    return registry
 
 
 @functools.cache

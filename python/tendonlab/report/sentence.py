@@ -14,6 +14,8 @@ FAR = 2.0  # noise floors of held-out error from which on effects leave somethin
 ON_FLOOR = 1.1  # noise floors of held-out error that read as the floor itself
 WORSE = -0.05  # shrinkage below which the gap has grown, and not by rounding
 EVEN = 0.5  # probability below which what was selected is not called established
+LITTLE = 0.1  # share of the held-out excess below which effects explain hardly any of the gap
+NOTHING = "A gap remains after tuning that no effect of the library explains."
 _COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five"}
 
 
@@ -144,7 +146,7 @@ def _ties(diagnosis: Diagnosis) -> str:
 def _unknown(diagnosis: Diagnosis) -> str:
     drift = _drift(diagnosis)
     if not diagnosis.selected:
-        return drift or "A gap remains after tuning that no effect of the library explains."
+        return drift or NOTHING
     one = len(diagnosis.selected) == 1
     shares = [finding.probability for finding in diagnosis.effects if finding.name in diagnosis.selected]
     if max(shares, default=1.0) >= EVEN:
@@ -158,11 +160,14 @@ def _unknown(diagnosis: Diagnosis) -> str:
     effects = f"{capital(phrases(diagnosis.selected, diagnosis.system))} {found}"
     if diagnosis.explained is None:
         share = "and held-out experiments are at the noise floor"
-    elif diagnosis.explained == 0.0:
-        share = f"but {'explains' if one else 'explain'} nothing of the excess error on held-out experiments"
+    elif diagnosis.explained < LITTLE:
+        part = percent(diagnosis.explained) if diagnosis.explained else "nothing"
+        share = f"but {'explains' if one else 'explain'} {part} of the excess error on held-out experiments"
     else:
         share = f"and {'explains' if one else 'explain'} {percent(diagnosis.explained)} of the excess error"
-    return f"{drift or 'The library explains only a part of the gap.'} {effects} {share}; {rest}."
+    is_part = diagnosis.explained is None or diagnosis.explained >= LITTLE
+    opening = drift or ("The library explains only a part of the gap." if is_part else NOTHING)
+    return f"{opening} {effects} {share}; {rest}."
 
 
 def _drift(diagnosis: Diagnosis) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from html import escape
@@ -56,8 +56,7 @@ class System:
         known = self._own_names
         for name, value in self.parameters.items():
             if name not in known:
-                offer = expected_one_of(name, known)
-                raise ParameterError(f"{name} = {value}: no parameter of {self.kind} with its effects; {offer}")
+                raise ParameterError(f"{name} = {value}: {self._why_unknown(name, known)}")
         usual = [p for p in self.info.parameters if p.purpose == "condition" or p.role in DEFAULTED]
         given = {**{p.name: p.typical for p in usual if p.name in known}, **self.parameters}
         self._require_all(known, given)
@@ -183,6 +182,13 @@ class System:
         for other in effect.needs:
             if other not in self.effects:
                 raise ParameterError(f"{name} shares parameters with {other}: add {other} too")
+
+    def _why_unknown(self, name: str, known: Collection[str]) -> str:
+        """Why this name is no parameter, and what was expected."""
+        lacking = [e.name for e in self.info.effects if name in e.parameters]
+        if lacking:
+            return f"parameter of {' or '.join(lacking)}, which this {self.kind} lacks; expected that effect as well"
+        return f"no parameter of {self.kind} with its effects; {expected_one_of(name, known)}"
 
     def _require_all(self, names: list[str], given: Mapping[str, float]) -> None:
         """Raise where one of the parameters `names` has no value and no default."""
