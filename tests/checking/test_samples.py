@@ -125,6 +125,7 @@ def test_an_angle_that_its_sensor_cuts_off_is_noted_where_experiments_share_the_
     notes = [f for f in found(tmp_path, *cut) if f.problem == "saturation"]
     assert [(f.signal, f.experiment) for f in notes] == [("joint_angle", "run_1"), ("joint_angle", "run_2")]
     assert "joint_angle stays at 0.75 rad for" in notes[0].detail
+    assert "if the sensor clips there, leave these samples empty" in notes[0].detail
     alone = [cut[0], (TIME, 0.6 * swings[1], CURRENT * 1.1)]
     assert [f for f in found(tmp_path, *alone) if f.problem == "saturation"] == []
 

@@ -319,3 +319,18 @@ def test_an_element_is_named_in_words_only_where_it_is_likely(with_effect: Diagn
     assert "On held-out experiments no output errs beyond its noise floor." in at_floor
     assert "is largest" not in at_floor
     assert "most likely comes from" in read(with_effect, tmp_path)[0]
+
+
+@pytest.mark.parametrize(
+    ("probability", "source"), [(0.97, "the joint and the actuator"), (0.48, "the joint or the actuator")]
+)
+def test_elements_that_are_as_probable_are_named_together(
+    probability: float, source: str, with_effect: Diagnosis, tmp_path: Path
+) -> None:
+    shares = {"motor": 0.3, "joint": probability, "actuation": probability - 0.005}
+    elements = [{"element": name, "probability": p} for name, p in shares.items()]
+    both = replace(with_effect, where={**with_effect.where, "elements": elements})
+    assert f"most likely comes from {source} (probability {probability} each)." in read(both, tmp_path)[0]
+    none = [{"signal": "joint_angle", "share": 0.0}]
+    missing = replace(both, verdict="unknown_effect", where={**both.where, "signals": none})
+    assert "What is missing shows in the training experiments." in read(missing, tmp_path)[0]

@@ -23,6 +23,7 @@ EFFORTS = ("command", "effort", "voltage", "force")  # dimensions that saturate
 MOTIONS = ("displacement", "angle", "flow", "speed")  # dimensions whose sensors do
 PLATEAU, LEAST_RUN = 0.01, 5  # share of samples at an extreme, and samples in a row, that make a limit
 SLOWED = 0.25  # of its usual change: a signal that changes less beside its stays eases into them
+CLIPPED = "; if the sensor clips there, leave these samples empty: no simulator follows them"
 COARSE = 4.0  # times its noise that a step of a reading must be to matter
 FINE = 1000.0  # steps within the travel: finer readings need no word
 
@@ -138,7 +139,8 @@ def _limits(dataset: Dataset) -> Iterator[Finding]:
                 unit = unit_text(dataset.signals[name].si_unit)
                 shares = {number(edge): f"{100 * at.mean():.0f} % of the samples" for edge, at in stays.items()}
                 places = " and ".join(f"at {edge} {unit} for {share}" for edge, share in shares.items())
-                text = f"{name} stays {places}, as at a limit"
+                clips = CLIPPED if name in dataset.outputs else ""
+                text = f"{name} stays {places}, as at a limit{clips}"
                 yield _note("saturation", text, experiment, name, sum(int(at.sum()) for at in stays.values()))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tendonlab.report import numbers, words
@@ -11,6 +11,7 @@ from tendonlab.report.diagnosis import Diagnosis
 
 CLEAR = 0.05  # p-value up to which the summary says that the error is concentrated in a regime
 LEAST = 0.005  # probability below which an element is not worth a row of its own
+ALIKE = 0.01  # difference of probabilities of elements that are as probable
 LIKELY = 0.2  # probability from which an element is named in words
 _P_VALUE = (
     "p-value: how often the same error, shifted in time against the motion, would be as concentrated by chance. "
@@ -36,10 +37,7 @@ def _summary(diagnosis: Diagnosis) -> str:
     """The largest entry of each list of `where`; empty where nothing stands out."""
     sentences = []
     if elements := [entry for entry in diagnosis.where["elements"] if entry["probability"] >= LIKELY]:
-        first = max(elements, key=lambda entry: entry["probability"])
-        source = words.element_words(first["element"], diagnosis.system, article=True)
-        sure = numbers.probability(first["probability"])
-        sentences.append(f"After tuning, the remaining error most likely comes from {source} (probability {sure}).")
+        sentences.append(f"After tuning, the remaining error most likely comes from {_sources(diagnosis, elements)}.")
     largest = []
     if signals := diagnosis.where["signals"]:
         first = max(signals, key=lambda entry: entry["share"])
@@ -56,6 +54,16 @@ def _summary(diagnosis: Diagnosis) -> str:
     if largest:
         sentences.append(f"{'It' if sentences else 'The remaining error'} is largest {', '.join(largest)}.")
     return " ".join(sentences)
+
+
+def _sources(diagnosis: Diagnosis, elements: Sequence[Mapping[str, Any]]) -> str:
+    """The most probable of these elements, with those that are as probable: all of them where each is likelier than
+    not, else one of them."""
+    most = max(entry["probability"] for entry in elements)
+    alike = [entry["element"] for entry in elements if entry["probability"] > most - ALIKE]
+    named = [words.element_words(element, diagnosis.system, article=True) for element in alike]
+    sure = f"probability {numbers.probability(most)}{' each' if len(alike) > 1 else ''}"
+    return f"{(' and ' if most > 0.5 else ' or ').join(named)} ({sure})"
 
 
 def _of_excess(share: float | None) -> str:
