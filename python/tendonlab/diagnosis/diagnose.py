@@ -14,6 +14,7 @@ from tendonlab.checking.spikes import without_outliers
 from tendonlab.data import Dataset, require_dataset, simulator_of
 from tendonlab.diagnosis.answer.answer import answer
 from tendonlab.diagnosis.answer.confirm import confirmed
+from tendonlab.diagnosis.apart import told_without, without_run_apart
 from tendonlab.diagnosis.discrepancy import RINGS, patterns
 from tendonlab.diagnosis.fault import data_fault
 from tendonlab.diagnosis.floor import renewed, under_noise_floor
@@ -128,7 +129,7 @@ def _search(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     if drawn := straight_inputs(dataset, system, outcome.search, shop):
         if not drawn.is_stated_otherwise:
             dataset, outcome = drawn.dataset, _searched(drawn.dataset, system, shop)
-        outcome = outcome._replace(warnings=(drawn.words,))
+        outcome = outcome._replace(warnings=(*outcome.warnings, drawn.words))
     if parts := in_windows(dataset, outcome.search):
         again = _searched(parts[0], system, shop)
         if again.search.selected:
@@ -147,8 +148,18 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     outcome = _weighed(few, loop, system, shop)
     if outcome.rings and (logged := _opened(few, system, RINGING)) is not few:
         again = _weighed(logged, loop, system, shop)
-        return outcome if again.rings else again
-    return outcome
+        few, outcome = (few, outcome) if again.rings else (logged, again)
+    return _without_run_apart(few, outcome, system, shop)
+
+
+def _without_run_apart(few: Dataset, outcome: _Outcome, system: System, shop: Workshop) -> _Outcome:
+    """The outcome; or that of the other experiments, where one held most of what was left and they tell more."""
+    if not (apart := without_run_apart(few, outcome.search)):
+        return outcome
+    others, name = apart
+    again = _weighed(others, outcome.loop and outcome.loop.without(name), system, shop)
+    told = told_without(name, outcome.search, again.search)
+    return again._replace(warnings=(told,)) if told else outcome
 
 
 def _weighed(few: Dataset, loop: Case | None, system: System, shop: Workshop) -> _Outcome:

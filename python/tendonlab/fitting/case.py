@@ -77,6 +77,12 @@ class Case:
         chosen = (replace(e, split=s) for e, s in zip(self.experiments, splits, strict=True))
         return replace(self, experiments=tuple(chosen))
 
+    def without(self, name: str) -> Case:
+        """The same case without the experiment of this name."""
+        kept = [i for i, e in enumerate(self.experiments) if e.name != name]
+        experiments = tuple(self.experiments[i] for i in kept)
+        return replace(self, experiments=experiments, prepared=tuple(self.prepared[i] for i in kept))
+
     def on_half(self, *, odd: bool) -> Case:
         """The same case with every other block of 2 s of each experiment measured, the odd or the even ones. Where one
         of these would hold no sample, as of a single block, the first or the second half of the samples."""
