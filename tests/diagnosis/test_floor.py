@@ -13,7 +13,7 @@ from tendonlab import _core
 from tendonlab.diagnosis.answer.notes import _on_the_floor
 from tendonlab.diagnosis.floor import renewed
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.floor import Sensitivities, estimate
+from tendonlab.fitting.floor import Sensitivities, estimate, with_steady_starts
 from tendonlab.fitting.problem import Fitter
 from tendonlab.fitting.rough import rough_fit
 
@@ -41,18 +41,6 @@ def test_with_repeats_too_a_run_in_a_wrong_initial_state_starts_again_before_the
     assert renewed(fitter, model, pool) == (fitter, "model, settled")
 
 
-def logging(case: Any, more: list[np.ndarray]) -> Any:
-    """The case whose repeats log the same but for what each logs `more`."""
-    first: dict[str, np.ndarray] = {}
-    for experiment, ready in zip(case.experiments, case.prepared, strict=True):
-        first.setdefault(str(experiment.repeat), ready.measured)
-    logged = [
-        replace(ready, measured=(ready.measured if e.repeat is None else first[e.repeat]) + own)
-        for e, ready, own in zip(case.experiments, case.prepared, more, strict=True)
-    ]
-    return replace(case, prepared=tuple(logged))
-
-
 @pytest.mark.parametrize("differs", [0.0, 0.01, 3.0])
 def test_no_floor_is_below_the_rounding_of_coarse_readings(twin_case: Any, differs: float) -> None:
     """Rounding that repeats does not show in repeats: rms differences of `differs` times its sd."""
@@ -68,7 +56,6 @@ def test_no_floor_is_below_the_rounding_of_coarse_readings(twin_case: Any, diffe
         residual += 0.2 * step * (differs == 0.0) * (len(seen) % 2)  # a constant is no noise of single samples
         none = np.zeros((0, *ready.measured.shape))
         seen.append(Sensitivities(residual, none, none))
-    case = logging(case, [-own.residual for own in seen])
     floor = estimate(case, seen, case.train)
     assert floor.repeated
     assert floor.rms[c] == pytest.approx(max(differs, 1.0) * rounding, rel=0.03)
@@ -132,19 +119,22 @@ def test_runs_whose_commands_differ_do_not_repeat(twin_case: Any, kind: str, pha
 
 
 @pytest.mark.parametrize("away", [0.0, 30.0])
-def test_repeats_that_a_wrong_model_starts_from_other_places_show_the_noise_of_their_logs(
+def test_repeats_that_a_wrong_model_starts_from_other_places_show_what_they_do_from_believed_ones(
     twin_case: Any, away: float
 ) -> None:
     """Without the friction that stops them, a model may start each repeat so that it ends where the log does."""
-    draw, seen, noises = np.random.default_rng(3), [], []
+    draw, seen, believed = np.random.default_rng(3), [], {}
     for i, ready in enumerate(twin_case.prepared):
         noise = twin_case.noise[:, None] * draw.standard_normal(ready.measured.shape)
         start = away * (-1.0) ** i * twin_case.noise[:, None] * np.exp(-np.linspace(0.0, 9.0, noise.shape[1]))
         none = np.zeros((0, *noise.shape))
         seen.append(Sensitivities(start - noise, none, none))
-        noises.append(noise)
-    case = logging(twin_case, noises)
-    floor = estimate(case, seen, case.train)
+        believed[i] = Sensitivities(-noise, none, none)
+    chosen = with_steady_starts(twin_case, seen, believed)
+    if away == 0.0:
+        assert all(a is b for a, b in zip(chosen, seen, strict=True))
+    floor = estimate(twin_case, chosen, twin_case.train)
     assert floor.repeated
-    assert floor.rms[case.measured] == pytest.approx(case.noise[case.measured], rel=0.05)
-    assert np.array(floor.sd)[case.measured] == pytest.approx(case.noise[case.measured], rel=0.05)
+    assert floor.rms[twin_case.measured] == pytest.approx(twin_case.noise[twin_case.measured], rel=0.05)
+    none_known = with_steady_starts(twin_case, seen, {})
+    assert all(a is b for a, b in zip(none_known, seen, strict=True))

@@ -71,6 +71,7 @@ def test_a_loop_that_rings_is_weighed_by_its_logged_command_where_that_stills_it
         return SimpleNamespace(dataset=few, rings=few.controller is not None or still_rings)
 
     monkeypatch.setattr(steps, "_weighed", weigh)
+    monkeypatch.setattr(steps, "_without_run_apart", lambda few, outcome, *_: outcome)
     monkeypatch.setattr(steps, "thinned", lambda dataset, _: dataset)
     monkeypatch.setattr(steps, "opened", lambda dataset, _: replace(dataset, controller=None))
     nobody: Any = None

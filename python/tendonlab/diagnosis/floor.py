@@ -11,7 +11,7 @@ from tendonlab import _core
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case, fine_enough
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities
+from tendonlab.fitting.floor import Sensitivities, estimate, friction_groups, sensitivities, with_steady_starts
 from tendonlab.fitting.noise import Floor
 from tendonlab.fitting.problem import Fitter
 
@@ -30,7 +30,19 @@ def first_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor) -> tuple[Fl
     """The noise floor that the residuals of a rough fit, or their differences between repeats, show; and what was seen
     of every experiment."""
     seen = _sensitivities(case, rough, pool)
-    return estimate(case, seen, case.train), seen
+    return estimate(case, with_steady_starts(case, seen, _at_belief(case, rough)), case.train), seen
+
+
+def _at_belief(case: Case, rough: Fitted) -> dict[int, Sensitivities]:
+    """Of each repeat that can be simulated from what is believed of its initial state."""
+    found = {}
+    for i, experiment in enumerate(case.experiments):
+        if experiment.repeat is not None:
+            try:
+                found[i] = sensitivities(case, rough.system, i, case.own_mean(i).tolist())
+            except NumericalError:
+                continue
+    return found
 
 
 def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:

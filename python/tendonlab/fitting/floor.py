@@ -9,7 +9,7 @@ of the sensors, and a sample counts as the memory of the best model's residuals 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,11 +96,7 @@ def sensitivities(case: Case, system: System, i: int, own: Sequence[float]) -> S
 
 def estimate(case: Case, seen: Sequence[Sensitivities], fitted: Sequence[int]) -> Floor:
     """The floor from repeats; where nothing repeats, from the residuals of the experiments `fitted` themselves."""
-    groups: dict[str, list[int]] = {}
-    for i, experiment in enumerate(case.experiments):
-        if experiment.repeat is not None and seen[i].is_known:
-            groups.setdefault(experiment.repeat, []).append(i)
-    repeats = [g for g in groups.values() if _do_repeat(case, g)]
+    repeats = [g for g in _groups(case, seen) if _do_repeat(case, g)]
     return _from_repeats(case, seen, repeats) if repeats else _without_repeats(case, seen, fitted)
 
 
@@ -125,12 +121,9 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
     members = [i for g in repeats for i in g]
     seen, differences = list(seen), []
     for g in repeats:
-        shared = _shared([case.experiments[i].time for i in g])
-        for i, kept in zip(g, shared, strict=True):
-            own = seen[i]
-            seen[i] = Sensitivities(own.residual[:, kept], own.friction[:, :, kept], own.initial[:, :, kept])
-        logs = [case.prepared[i].measured[:, kept] for i, kept in zip(g, shared, strict=True)]
-        differences += _differences(case, [seen[i].residual for i in g], logs)
+        for i, own in zip(g, _alike(case, seen, g), strict=True):
+            seen[i] = own
+        differences += _differences([seen[i].residual for i in g])
     pairs = [_clean(case, d, seen[i]) for i, d in zip(members, differences, strict=True)]
     ar: list[list[float]] = [[] for _ in case.noise]
     rms, sd = np.full(len(ar), np.nan), [0.0 for _ in ar]
@@ -148,19 +141,49 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
     return Floor(rms, ar, sd, _run_to_run([coefficients for _, coefficients in pairs]), repeated=True)
 
 
-def _differences(case: Case, residuals: Sequence[np.ndarray], logs: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Of each repeat to the mean of all, with the variance of one: of what a model leaves of them; of the logs where
-    these differ by clearly less. A model that lacks much may start each repeat from another place to make up for
-    that."""
-    from_mean = [[row - np.mean(rows, axis=0) for row in rows] for rows in (residuals, logs)]
-    left, logged = (np.nanmean(np.square(_in_noise(case, np.concatenate(rows, axis=1)))) for rows in from_mean)
-    scale = np.sqrt(len(logs) / (len(logs) - 1))
-    return [scale * row for row in from_mean[int(logged < ALIKE * left)]]
+def with_steady_starts(
+    case: Case, seen: Sequence[Sensitivities], believed: Mapping[int, Sensitivities]
+) -> list[Sensitivities]:
+    """What was `seen`; of repeats that differ by clearly less from the initial states that are `believed` of them, what
+    was seen there. A model that lacks much may start each repeat from another place to make up for that."""
+    chosen = list(seen)
+    for g in _groups(case, seen):
+        if len(g) > 1 and all(i in believed and believed[i].is_known for i in g):
+            there = [believed[i] if i in g else of for i, of in enumerate(seen)]
+            fitted, steady = (_spread(case, _alike(case, of, g)) for of in (seen, there))
+            if steady < ALIKE * fitted:
+                chosen = [there[i] if i in g else of for i, of in enumerate(chosen)]
+    return chosen
 
 
-def _in_noise(case: Case, rows: np.ndarray) -> np.ndarray:
-    """Rows of all outputs in units of the sensors' noise, of what was measured."""
-    return np.asarray(rows[case.measured] / case.noise[case.measured, None])
+def _groups(case: Case, seen: Sequence[Sensitivities]) -> list[list[int]]:
+    """The experiments of each label that several may share, of those that could be simulated."""
+    groups: dict[str, list[int]] = {}
+    for i, experiment in enumerate(case.experiments):
+        if experiment.repeat is not None and seen[i].is_known:
+            groups.setdefault(experiment.repeat, []).append(i)
+    return list(groups.values())
+
+
+def _alike(case: Case, seen: Sequence[Sensitivities], group: Sequence[int]) -> list[Sensitivities]:
+    """What was seen of each repeat of a group at the instants that all of them have."""
+    shared = _shared([case.experiments[i].time for i in group])
+    return [
+        Sensitivities(seen[i].residual[:, kept], seen[i].friction[:, :, kept], seen[i].initial[:, :, kept])
+        for i, kept in zip(group, shared, strict=True)
+    ]
+
+
+def _differences(residuals: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Of each repeat to the mean of all, with the variance of one."""
+    scale = np.sqrt(len(residuals) / (len(residuals) - 1))
+    return [scale * (row - np.mean(residuals, axis=0)) for row in residuals]
+
+
+def _spread(case: Case, seen: Sequence[Sensitivities]) -> float:
+    """Mean square by which repeats differ, in units of the sensors' noise."""
+    rows = np.concatenate(_differences([own.residual for own in seen]), axis=1)
+    return float(np.nanmean(np.square(rows[case.measured] / case.noise[case.measured, None])))
 
 
 def _shared(times: Sequence[np.ndarray]) -> list[np.ndarray]:
