@@ -39,8 +39,6 @@ def test_what_is_late_or_early_blocks(by: float, signal: str | None, tmp_path: P
     found = replace(LATE, signal=signal, seconds=by)
     assert confirmed([found], wrong, wrong.system()) == [found]
     assert not confirmed([replace(found, seconds=-by)], wrong, wrong.system())[0].blocks
-    tuned = wrong.system()
-    assert confirmed([found], wrong, tuned, is_tuned=True) == [found]
 
 
 def test_what_cannot_be_simulated_stays_as_it_was_found(right: Dataset, monkeypatch: pytest.MonkeyPatch) -> None:

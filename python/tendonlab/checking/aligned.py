@@ -27,18 +27,15 @@ NUM_FITTED = 4  # other experiments to which the simulator is fitted first
 REFUTED = "but the simulator follows this experiment no better without that, so nothing has to be corrected"
 
 
-def confirmed(
-    found: Sequence[Finding], dataset: Dataset, system: System, *, is_tuned: bool = False, if_unable: bool = True
-) -> list[Finding]:
-    """The findings, where a late experiment blocks only if the simulator follows it better on one clock. `is_tuned`:
-    whether the `system` has been fitted; else it is fitted roughly to other experiments. `if_unable`: whether what
-    cannot be simulated blocks."""
+def confirmed(found: Sequence[Finding], dataset: Dataset, system: System, *, if_unable: bool = True) -> list[Finding]:
+    """The findings, where a late experiment blocks only if the simulator, fitted roughly to other
+    experiments, follows it better on one clock. `if_unable`: whether what cannot be simulated blocks."""
     if not any(map(_is_late, found)):
         return list(found)
     judged: list[Finding] = []
     for name, group in groupby(found, _late_experiment):
         of = list(group)
-        if name and not _is_mended(of, name, dataset, system, is_tuned=is_tuned, if_unable=if_unable):
+        if name and not _is_mended(of, name, dataset, system, if_unable=if_unable):
             of = [replace(f, blocks=False, detail=f.detail.replace(ALIGN, REFUTED)) for f in of]
         judged += of
     return judged
@@ -52,14 +49,12 @@ def _late_experiment(finding: Finding) -> str:
     return str(finding.experiment) if _is_late(finding) else ""
 
 
-def _is_mended(
-    late: Sequence[Finding], name: str, dataset: Dataset, system: System, *, is_tuned: bool, if_unable: bool
-) -> bool:
+def _is_mended(late: Sequence[Finding], name: str, dataset: Dataset, system: System, *, if_unable: bool) -> bool:
     """Whether the simulator leaves much less of the experiment `name` without the lags that were found in it."""
     try:
         few = thinned(dataset, system)
         case = make_case(_others(few, name), system)
-        model = system if is_tuned else rough_fit(case, _core.Cancel()).system
+        model = rough_fit(case, _core.Cancel()).system
         as_logged, aligned = (_error(case.playing(e), model) for e in _on_two_clocks(few[name], late, case))
     except (DatasetError, NumericalError, ParameterError):
         return if_unable

@@ -75,8 +75,8 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
     amplitudes = [name for name in own if name in system.parameters and system.info.parameter(name).amplitude]
     added = {name: NominalParameter(value=system.parameters[name]) for name in amplitudes}
     free = replace(dataset, parameters={**added, **dataset.parameters})
-    late, _ = _clocks(Equation(free, system), logs, marked, is_tuned=True)
-    return tuple(f for f in late if f.blocks)
+    late, _ = _clocks(Equation(free, system), logs, marked, simulated=False)
+    return tuple(finding for finding in late if finding.blocks)
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
@@ -93,10 +93,9 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
 
 
 def _clocks(
-    equation: Equation, logs: Logs, marked: Marks, *, is_tuned: bool = False
+    equation: Equation, logs: Logs, marked: Marks, *, simulated: bool = True
 ) -> tuple[list[Finding], list[str]]:
-    """Lags, of the experiments that a motor drives, as a simulation confirms them. `is_tuned`: whether the simulator
-    was fitted."""
+    """Lags, of the experiments that a motor drives; where `simulated`, as a simulation confirms them."""
     if off := free_runs(equation, logs):
         driven = tuple(e for k, e in enumerate(equation.dataset) if k not in off)
         equation = Equation(replace(equation.dataset, experiments=driven), equation.system)
@@ -109,9 +108,11 @@ def _clocks(
         return [], [UNEXPLAINED]
     step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))
     given = late, [e.name for e in dataset.experiments], dataset.inputs, step
-    found = confirmed(clock_findings(*given), dataset, equation.system, is_tuned=is_tuned)
+    if not simulated:
+        return clock_findings(*given), []
+    found = confirmed(clock_findings(*given), dataset, equation.system)
     if not any(f.blocks for f in found):
         striking = striking_findings(*given)
-        striking = confirmed(striking, dataset, equation.system, is_tuned=is_tuned, if_unable=False)
+        striking = confirmed(striking, dataset, equation.system, if_unable=False)
         found = [*(f for f in striking if f.blocks), *found]
     return found, []
