@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from tendonlab.diagnosis import apart
-from tendonlab.diagnosis.apart import LARGE, told_without, without_run_apart
+from tendonlab.diagnosis.apart import told_without, without_run_apart
+from tendonlab.diagnosis.windows import LARGE
 from tendonlab.errors import NumericalError
 
 

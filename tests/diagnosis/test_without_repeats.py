@@ -10,7 +10,6 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.checking.finding import Finding
-from tendonlab.diagnosis import late as lateness
 from tendonlab.diagnosis.floor import renewed, under_noise_floor
 from tendonlab.diagnosis.search.rivals import contest_each_place
 from tendonlab.diagnosis.search.swap import extended
@@ -108,11 +107,11 @@ def test_a_late_experiment_that_an_effect_hides_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.cpu(120)
-def test_an_experiment_that_the_final_model_predicts_is_not_late(tmp_path: Path, monkeypatch) -> None:
+def test_an_experiment_that_the_simulator_follows_as_it_was_logged_is_not_late(tmp_path: Path, monkeypatch) -> None:
     """The equation may say so: of a servo's target, its steps look late to it once a deadband is known."""
     rig = write(tmp_path, RIG.with_effects({"joint:load_dependence": {"load_dependence": 0.2}}), seed=3)
     said = Finding(problem="clock", experiment="slow", seconds=0.03, blocks=True, detail="late")
-    monkeypatch.setattr(lateness, "late_experiments", lambda *_: (said,))
+    monkeypatch.setattr("tendonlab.checking.check.clock_findings", lambda *_: [said])
     why = tl.diagnose(rig, progress=False)
     assert (why.verdict, why.selected) == ("effect", ("joint:load_dependence",))
     assert not [f for f in why.data if f["blocks"]]

@@ -76,7 +76,7 @@ def late_experiments(dataset: Dataset, system: System) -> tuple[Finding, ...]:
     added = {name: NominalParameter(value=system.parameters[name]) for name in amplitudes}
     free = replace(dataset, parameters={**added, **dataset.parameters})
     late, _ = _clocks(Equation(free, system), logs, marked, simulated=False)
-    return tuple(finding for finding in late if finding.blocks)
+    return tuple(finding for finding in confirmed(late, dataset, system) if finding.blocks)
 
 
 def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[list[Finding], list[str]]:
@@ -111,8 +111,9 @@ def _clocks(
     if not simulated:
         return clock_findings(*given), []
     found = confirmed(clock_findings(*given), dataset, equation.system)
-    if not any(f.blocks for f in found):
-        striking = striking_findings(*given)
-        striking = confirmed(striking, dataset, equation.system, if_unable=False)
-        found = [*(f for f in striking if f.blocks), *found]
-    return found, []
+    if any(f.blocks for f in found):
+        return found, []
+    judged = {f.experiment for f in found}
+    striking = [f for f in striking_findings(*given) if f.experiment not in judged]
+    striking = confirmed(striking, dataset, equation.system, if_unable=False)
+    return [*(f for f in striking if f.blocks), *found], []

@@ -11,11 +11,11 @@ import numpy as np
 
 from tendonlab.data import Dataset
 from tendonlab.diagnosis.search.select import Search
+from tendonlab.diagnosis.windows import LARGE
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import PLAIN
 
-LARGE = 8.0  # mean square over the noise that the model must leave: below, nothing is to be found
 MOST = 0.7  # share of the cost that the run must hold
 FEWEST = 4  # other training experiments, which can decide
 HALF = 0.5  # share that a model found without the run must at most leave, of the others as of the run itself

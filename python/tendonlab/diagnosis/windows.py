@@ -39,11 +39,6 @@ def in_windows(dataset: Dataset, search: Search) -> tuple[Dataset, str] | None:
     return replace(dataset, experiments=parts), WORDS.format(count, WINDOW)
 
 
-def is_part_of(part: str, experiment: str) -> bool:
-    """Whether `part` names the experiment or a part of it."""
-    return part == experiment or part.partition(PART)[0] == experiment
-
-
 def _parts(experiment: Experiment) -> Iterator[Experiment]:
     """The experiment in parts of about `WINDOW`; samples between two belong to both. What was stated of the beginning
     holds in the first part alone. Parts repeat nothing: each is another piece of the motion."""

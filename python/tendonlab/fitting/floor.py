@@ -23,9 +23,7 @@ AR_ORDER = 6
 NOTHING = 1e-6  # of rounding: readings that differ by less, but for a constant, repeat exactly
 LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatever was stated
 DIFFERENT = 0.5  # of the rms command, by which those of repeats may differ; such of stable loops differ by 0.35 at most
-ALIKE = (
-    0.5  # share of what a model makes repeats differ by (mean square), below which their logs differ by clearly less
-)
+ALIKE = 0.5  # share of what repeats differ by from fitted starts (mean square), below which believed ones count
 LARGEST = 0.5  # plausible factor by which friction differs from run to run
 RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
@@ -149,10 +147,11 @@ def with_steady_starts(
     chosen = list(seen)
     for g in _groups(case, seen):
         if len(g) > 1 and all(i in believed and believed[i].is_known for i in g):
-            there = [believed[i] if i in g else of for i, of in enumerate(seen)]
+            there = [believed.get(i, own) for i, own in enumerate(seen)]
             fitted, steady = (_spread(case, _alike(case, of, g)) for of in (seen, there))
             if steady < ALIKE * fitted:
-                chosen = [there[i] if i in g else of for i, of in enumerate(chosen)]
+                for i in g:
+                    chosen[i] = believed[i]
     return chosen
 
 
