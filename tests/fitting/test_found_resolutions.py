@@ -55,4 +55,6 @@ def test_the_step_of_a_coarse_sensor_in_fast_motion_is_found(rig: tl.Dataset) ->
     assert common_step(noisy) == 0.0
     assert common_step([*printed, np.rad2deg(noisy[0])]) == 0.0
     assert common_step([np.round(record, 5) for record in noisy]) == 0.0  # the digits of the file, far below the noise
+    triangle = np.abs((0.3 * time) % 2.0 - 1.0)
+    assert common_step([triangle, 2.0 * triangle]) == 0.0  # steady motions that nobody rounded
     assert common_step([]) == 0.0

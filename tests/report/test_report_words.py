@@ -282,7 +282,7 @@ def test_a_value_has_the_digits_of_its_interval() -> None:
 def test_what_effects_leave_far_above_the_floor_is_told(with_effect: Diagnosis) -> None:
     gap = {"joint_angle": {"noise_floor": 1.0, "nominal": 90.0, "refitted": 80.0, "with_effect": 8.3}}
     told = replace(with_effect, gap=gap, indistinguishable=()).sentence
-    assert "What is left is 8.3 times the noise floor: another form of this effect, or a smaller effect" in told
+    assert "What is left is 8.3 times the noise floor: another form of this effect, or a smaller effect, may" in told
     assert "Probability that this is the main explanation" in told
     gap["joint_angle"]["with_effect"] = 1.9
     told = replace(with_effect, gap=gap, indistinguishable=()).sentence

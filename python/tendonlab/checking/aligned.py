@@ -24,7 +24,7 @@ from tendonlab.simulation.system import System
 
 MENDED = 0.5  # share of its mean square error that the simulator must at most leave once the outputs are on one clock
 NUM_FITTED = 4  # other experiments to which the simulator is fitted first
-REFUTED = "but the simulator follows this experiment no better without that, so nothing has to be corrected"
+REFUTED = "but on one clock the simulator follows this experiment hardly better, so nothing has to be corrected"
 
 
 def confirmed(found: Sequence[Finding], dataset: Dataset, system: System, *, if_unable: bool = True) -> list[Finding]:

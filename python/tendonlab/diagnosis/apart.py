@@ -20,8 +20,8 @@ MOST = 0.7  # share of the cost that the run must hold
 FEWEST = 4  # other training experiments, which can decide
 HALF = 0.5  # share that a model found without the run must at most leave, of the others as of the run itself
 APART = (
-    "{} alone held {:.0f} % of what every model left, so effects were sought in the other experiments. There {} "
-    "{} found, which leaves less than half of what was left of {}, too. All numbers are those of the other experiments."
+    "{} alone held {:.0f} % of the error that remained, so effects were sought in the other experiments. There {} {} "
+    "found, and the error in {} falls by more than half as well. All numbers are those of the other experiments."
 )
 
 

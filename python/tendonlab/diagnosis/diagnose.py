@@ -46,8 +46,8 @@ AT_ITS_LIMIT = (
     "an injection, which follows the logged motion."
 )
 RINGING = (
-    "What every model leaves of the closed loop rings, as a lightly damped loop does that noise shakes. So errors are "
-    "those of an injection, which follows the logged motion."
+    "The closed loop rings: what the best model leaves lies about one frequency. Noise that the logs do not hold may "
+    "shake a lightly damped loop. So errors are those of an injection, which follows the logged motion."
 )
 FORCED = "The check found problems in the logs that mislead a diagnosis. The diagnosis was run anyway (force)."
 
@@ -56,14 +56,14 @@ log = logging.getLogger("tendonlab")
 
 class _Outcome(NamedTuple):
     """A finished search; the untouched simulator, fitted in its initial states alone; the logs with their controller,
-    where models were weighed without; warnings; whether models were weighed in short windows, as no series of simulated
-    rigs was whose truth is known."""
+    where models were weighed without; warnings; whether models were weighed as no series of simulated rigs was whose
+    truth is known: in short windows, by the command of a loop that rings, without a run."""
 
     search: Search
     nominal: Fitted
     loop: Case | None
     warnings: tuple[str, ...] = ()
-    in_parts: bool = False
+    is_untried: bool = False
 
     @property
     def rings(self) -> bool:
@@ -102,14 +102,14 @@ def diagnose(
     if any(finding.problem == "outliers" for finding in logs.findings):
         dataset = without_outliers(dataset)
     with open_workshop(names, progress=progress) as shop:
-        search, nominal, loop, warnings, in_parts = _search(dataset, system, shop)
+        search, nominal, loop, warnings, is_untried = _search(dataset, system, shop)
         logs = checked_again(logs, dataset, search)
         if logs.blocks and not force:
             return data_fault(dataset, system, logs, seed=seed, seconds=time.monotonic() - began)
         found = answer(search, nominal, loop, library=names, seed=seed, seconds=lambda: time.monotonic() - began)
     warnings = (*((FORCED,) if logs.blocks else ()), *warnings, *found.warnings)
     data = tuple(finding.to_dict() for finding in logs.findings)
-    return replace(found, data=data, warnings=warnings, calibrated=found.calibrated and not in_parts)
+    return replace(found, data=data, warnings=warnings, calibrated=found.calibrated and not is_untried)
 
 
 @with_one_blas_thread
@@ -133,7 +133,7 @@ def _search(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     if parts := in_windows(dataset, outcome.search):
         again = _searched(parts[0], system, shop)
         if again.search.selected:
-            return again._replace(warnings=(*outcome.warnings, parts[1]), in_parts=True)
+            return again._replace(warnings=(*outcome.warnings, parts[1]), is_untried=True)
     return outcome
 
 
@@ -146,9 +146,9 @@ def _searched(dataset: Dataset, system: System, shop: Workshop) -> _Outcome:
     if is_mostly_at_its_limit(few, system):
         few = _opened(few, system, AT_ITS_LIMIT)
     outcome = _weighed(few, loop, system, shop)
-    if outcome.rings and (logged := _opened(few, system, RINGING)) is not few:
+    if few.controller and outcome.rings and (logged := _opened(few, system, RINGING)) is not few:
         again = _weighed(logged, loop, system, shop)
-        few, outcome = (few, outcome) if again.rings else (logged, again)
+        few, outcome = (few, outcome) if again.rings else (logged, again._replace(is_untried=True))
     return _without_run_apart(few, outcome, system, shop)
 
 
@@ -159,7 +159,7 @@ def _without_run_apart(few: Dataset, outcome: _Outcome, system: System, shop: Wo
     others, name = apart
     again = _weighed(others, outcome.loop and outcome.loop.without(name), system, shop)
     told = told_without(name, outcome.search, again.search)
-    return again._replace(warnings=(told,)) if told else outcome
+    return again._replace(warnings=(told,), is_untried=True) if told else outcome
 
 
 def _weighed(few: Dataset, loop: Case | None, system: System, shop: Workshop) -> _Outcome:

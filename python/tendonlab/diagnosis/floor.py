@@ -30,19 +30,20 @@ def first_floor(case: Case, rough: Fitted, pool: ThreadPoolExecutor) -> tuple[Fl
     """The noise floor that the residuals of a rough fit, or their differences between repeats, show; and what was seen
     of every experiment."""
     seen = _sensitivities(case, rough, pool)
-    return estimate(case, with_steady_starts(case, seen, _at_belief(case, rough)), case.train), seen
+    return estimate(case, with_steady_starts(case, seen, _at_belief(case, rough, pool)), case.train), seen
 
 
-def _at_belief(case: Case, rough: Fitted) -> dict[int, Sensitivities]:
-    """Of each repeat that can be simulated from what is believed of its initial state."""
-    found = {}
-    for i, experiment in enumerate(case.experiments):
-        if experiment.repeat is not None:
-            try:
-                found[i] = sensitivities(case, rough.system, i, case.own_mean(i).tolist())
-            except NumericalError:
-                continue
-    return found
+def _at_belief(case: Case, rough: Fitted, pool: ThreadPoolExecutor) -> dict[int, Sensitivities]:
+    """Of each repeat from what is believed of its initial state; nothing is known of one that cannot be simulated."""
+
+    def seen(i: int) -> Sensitivities:
+        try:
+            return sensitivities(case, rough.system, i, case.own_mean(i).tolist())
+        except NumericalError:
+            return Sensitivities.unknown(case.prepared[i].measured)
+
+    repeats = [i for i, experiment in enumerate(case.experiments) if experiment.repeat is not None]
+    return dict(zip(repeats, pool.map(seen, repeats), strict=True))
 
 
 def renewed(fitter: Fitter, model: Fitted, pool: ThreadPoolExecutor) -> tuple[Fitter, Fitted]:

@@ -130,7 +130,7 @@ def _left(diagnosis: Diagnosis) -> str:
     if floors < FAR:
         return ""
     form = "another form of this effect" if len(diagnosis.selected) == 1 else "another form of one of these effects"
-    return f" What is left is {floors:.2g} times the noise floor: {form}, or a smaller effect, is still missing."
+    return f" What is left is {floors:.2g} times the noise floor: {form}, or a smaller effect, may still be missing."
 
 
 def _ties(diagnosis: Diagnosis) -> str:

@@ -12,6 +12,7 @@ ALL_NOISE = 1.3  # times the white part of records, within which all of them is 
 FEWEST, SAME_STEP = 10, 0.01  # samples of a record that may show a step; share by which steps of records may differ
 SMALL, USUAL = 5.5, 0.15  # steps, up to which changes show whether all are whole; share of changes that are so small
 LONG = 50.0  # steps, up to which changes are looked at where readings move on by more than a step at every sample
+FEW = 2  # different numbers of steps, as triangles at one speed have them without any rounding
 ROUGH = 0.5  # share of the noise of a record that such a step must make up to matter
 WHOLE, MOSTLY = 0.1, 0.9  # of a step, from whole ones; share of the small changes that must be so near
 
@@ -79,15 +80,17 @@ def common_step(records: Sequence[np.ndarray]) -> float:
 
 def _coarse_step(records: Sequence[np.ndarray]) -> float:
     """The step of which all changes of all records are multiples, where rounding to it is much of their noise; 0 where
-    there is none. Of changes that are rounded to nothing a fifth would look like multiples."""
+    there is none. Of changes that are rounded to nothing a fifth would look like multiples; those of a steady motion
+    are all one."""
     steps = [step for r in records if (step := smallest_change(r)) > 0.0]
     noise = float(np.median([white_noise_sd(r) for r in records])) if records else 0.0
     if not steps or min(steps) < ROUGH * noise * np.sqrt(12.0):
         return 0.0
-    step = min(steps)
+    step, different = min(steps), set()
     for record in records:
         multiples = np.abs(np.diff(record)) / step
         multiples = multiples[(multiples > 0.5) & (multiples < LONG)]
         if len(multiples) and np.mean(np.abs(multiples - np.round(multiples)) < WHOLE) < MOSTLY:
             return 0.0
-    return step
+        different |= set(np.round(multiples).tolist())
+    return step if len(different) > FEW else 0.0
