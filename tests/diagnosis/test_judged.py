@@ -11,7 +11,7 @@ import pytest
 
 import tendonlab as tl
 from tendonlab.cli.demo import bundled
-from tendonlab.diagnosis import diagnose as diagnosing
+from tendonlab.diagnosis import outcome
 from tendonlab.diagnosis.answer import notes
 from tendonlab.diagnosis.answer.answer import _shown
 from tendonlab.diagnosis.answer.judged import Judged
@@ -77,10 +77,10 @@ def test_a_loop_in_which_the_simulator_does_not_run_is_not_shown(monkeypatch: py
         raise NumericalError("the step fell to 0")
 
     dataset = tl.load(bundled())
-    loop, none = diagnosing._loop(dataset, dataset.system())
+    loop, none = outcome._loop(dataset, dataset.system())
     assert (loop is not None, none) == (True, ())
-    monkeypatch.setattr(diagnosing, "make_case", fails)
-    loop, (said,) = diagnosing._loop(dataset, dataset.system())
+    monkeypatch.setattr(outcome, "make_case", fails)
+    loop, (said,) = outcome._loop(dataset, dataset.system())
     assert loop is None
     assert "does not run in its closed loop (the step fell to 0)" in said
 
@@ -130,7 +130,7 @@ def test_a_loop_that_does_not_repeat_is_weighed_by_injection(monkeypatch: pytest
             raise KeyboardInterrupt
         return None, SimpleNamespace(floor=SimpleNamespace(tau=0.3))
 
-    monkeypatch.setattr(diagnosing, "_under_floor", under_floor)
+    monkeypatch.setattr(outcome, "_under_floor", under_floor)
     with pytest.raises(KeyboardInterrupt):
         tl.diagnose(tl.load(bundled()), progress=False)
     assert kinds == ["controller", "injection"]

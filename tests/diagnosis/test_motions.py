@@ -6,7 +6,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tendonlab.diagnosis.answer.motions import RATE, Reach, _reversals, _rounded, _sweep, motions, seen_reach
+from tendonlab.diagnosis.answer.motions import (
+    RATE,
+    Reach,
+    _constant_speeds,
+    _reversals,
+    _rounded,
+    _sweep,
+    motions,
+    seen_reach,
+)
 
 
 def test_proposals_respect_travel_speed_and_acceleration(twin_case: Any) -> None:
@@ -19,7 +28,7 @@ def test_proposals_respect_travel_speed_and_acceleration(twin_case: Any) -> None
 
 
 def test_gravity_asks_for_more_payload(twin_case: Any) -> None:
-    assert [m.payload > 0 for m in motions(twin_case, "motor_angle")] == [False] * 5 + [True]
+    assert [m.payload > 0 for m in motions(twin_case, "motor_angle")] == [False] * 6 + [True]
 
 
 def sine_case(time: np.ndarray, angle: np.ndarray) -> Any:
@@ -74,3 +83,15 @@ def test_reversals_begin_upwards_from_the_middle() -> None:
     path = _reversals(reach, "joint", "reversals", 0.5, 0.5).path
     assert path[0] == pytest.approx(1.0, abs=0.05)
     assert path[int(0.2 * RATE)] > path[0]
+
+
+def test_constant_speeds_rise_geometrically_and_are_held_in_both_directions() -> None:
+    reach = Reach(middle=0.1, travel=1.0, speed=1.5, acceleration=20.0, unit="rad")
+    speed = np.gradient(_constant_speeds(reach, "joint").path, 1 / RATE)
+    for k, top in enumerate(np.geomspace(0.045, 1.5, 5)):
+        for way, sign in (
+            (2 * k, 1.0),
+            (2 * k + 1, -1.0),
+        ):  # 0.6 s each, of which the middle third is away from corners
+            held = speed[round((0.6 * way + 0.2) * RATE) : round((0.6 * way + 0.4) * RATE)]
+            np.testing.assert_allclose(held, sign * top, rtol=1e-6)

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tendonlab.diagnosis.diagnose import _tuned
+from tendonlab.diagnosis.outcome import _tuned
 from tendonlab.errors import NumericalError
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import tendonlab as tl
 from checking.pendulum import record
-from tendonlab.diagnosis import diagnose as steps
+from tendonlab.diagnosis import outcome as steps
 from tendonlab.fitting.replay import is_mostly_at_its_limit
 from tendonlab.simulation.records import Controller
 

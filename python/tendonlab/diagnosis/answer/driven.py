@@ -87,10 +87,10 @@ class Driven:
 
 
 def drives(case: Case, *, rests: bool = False) -> list[Driven]:
-    """Reversals at three speeds, a sweep and micro motion of the inputs that move the rig, other inputs held; and
-    reversals under loads that change slowly or with the motion. `rests`: also reversals after a rest; else also the
-    full reversals, under a load that changes slowly where there is one, under the other conditions of the training
-    experiments. None that the inputs could follow only much more slowly than its words say."""
+    """Reversals at three speeds, a sweep, micro motion and constant speeds of the inputs that move the rig, other
+    inputs held; and reversals under loads that change slowly or with the motion. `rests`: also reversals after a rest;
+    else also the full reversals, under a load that changes slowly where there is one, under the other conditions of the
+    training experiments. None that the inputs could follow only much more slowly than its words say."""
     given = [_Channel.of(case, row) for row in case.system.info.inputs if _is_logged(case, row)]
     varying = [one for one in given if one.reach.speed > MOVES * one.reach.travel > 0]
     moved = [one for one in varying if one.row.dimension in (*PLACES, *SPEEDS)]

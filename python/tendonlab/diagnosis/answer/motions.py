@@ -16,6 +16,8 @@ DURATION, RATE = 6.0, 250.0
 EASE = 0.5  # s in which a motion starts from rest
 SEEN = 0.995  # quantile of logged speeds and accelerations that a rig is taken to manage
 SLOWEST, USUAL, FULL = 0, 1, 2  # of `paths`
+NUM_SPEEDS, SLOW = 5, 0.03  # constant speeds, and the slowest one as a share of the fastest
+SPARE, CORNER = 0.9, 0.25  # share of the travel that they use, and of each way in which they turn
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,8 @@ def eased(path: np.ndarray, seconds: float = EASE) -> np.ndarray:
 
 
 def motions(case: Case, output: str) -> list[Motion]:
-    """Slow, middling and full reversals, micro motion and a sweep; with more payload where gravity acts."""
+    """Slow, middling and full reversals, a sweep, micro motion and constant speeds; full reversals with more payload
+    where gravity acts."""
     made = paths(seen_reach(case, case.outputs.index(output)), output.replace("_", " "))
     row = case.system.info.with_role("payload")
     gravity = 0.0 if row is None else case.system.parameters[row.name]
@@ -70,13 +73,14 @@ def motions(case: Case, output: str) -> list[Motion]:
 
 
 def paths(reach: Reach, place: str) -> list[Motion]:
-    """Slow, middling and full reversals, a sweep and micro motion."""
+    """Slow, middling and full reversals, a sweep, micro motion and constant speeds."""
     return [
         _reversals(reach, place, "slow reversals", 0.1, 0.1),
         _reversals(reach, place, "reversals", 0.5, 0.5),
         _reversals(reach, place, "full-travel triangles", 1.0, 1.0),
         _sweep(reach, place),
         _micro_motion(reach, place),
+        _constant_speeds(reach, place),
     ]
 
 
@@ -142,6 +146,17 @@ def _micro_motion(reach: Reach, place: str) -> Motion:
     path = reach.middle + moved + small * np.sin(2 * np.pi * 2 * instants())
     words = f"micro motion of the {place}, ±{small:.2g} {reach.unit} at 2 Hz about several positions"
     return Motion(words, path)
+
+
+def _constant_speeds(reach: Reach, place: str) -> Motion:
+    """Forth and back from one place, at one constant speed after another: what friction follows with its speed."""
+    lasts = DURATION / (2 * NUM_SPEEDS)  # one way
+    top = min(reach.speed, SPARE * 2 * reach.travel / lasts, reach.acceleration * CORNER * lasts / 2)
+    speeds = top * np.geomspace(SLOW, 1.0, NUM_SPEEDS)
+    each, since = np.divmod(instants(), 2 * lasts)
+    path = speeds[each.astype(int)] * np.minimum(since, 2 * lasts - since) + reach.middle - top * lasts / 2
+    over = f"over at most ±{top * lasts / 2:.2g} {reach.unit} at {speeds[0]:.2g} to {top:.2g} {reach.unit}/s"
+    return Motion(f"constant speeds of the {place}, forth and back {over}", _rounded(path, CORNER * lasts))
 
 
 def _rounded(path: np.ndarray, seconds: float) -> np.ndarray:
