@@ -62,8 +62,8 @@ class Outcome(NamedTuple):
 
 
 def outcome_of(dataset: Dataset, system: System, shop: Workshop) -> Outcome:
-    """The outcome on a rig. Its warnings say where inputs were not held between their samples (if nobody states that they
-    are, they are taken as straight), and where models were weighed in short windows."""
+    """The outcome on a rig. Its warnings say where inputs were not held between their samples (if nobody states that
+    they are, they are taken as straight), and where models were weighed in short windows."""
     dataset = with_found_resolutions(dataset)
     outcome = _searched(dataset, system, shop)
     if drawn := straight_inputs(dataset, system, outcome.search, shop):
