@@ -18,6 +18,7 @@ from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.odd import odd_channels, odd_clocks, owned
 from tendonlab.checking.odd_units import odd_units
+from tendonlab.checking.replayed import late_by_replay
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
 from tendonlab.checking.silent import all_at_rest, silent_inputs
@@ -104,6 +105,9 @@ def _clocks(
             return [], [UNDRIVEN]
         logs = left
     dataset, late = equation.dataset, lags(equation, logs)
+    alone = late_by_replay(dataset, equation.system) if simulated and not equation.moved else []
+    if alone := [f for f in confirmed(alone, dataset, equation.system) if f.blocks]:
+        return alone, []
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]
     step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))

@@ -42,7 +42,7 @@ def clock_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], step
     late |= _late_alone(lags.scanned) & _far_off(away) & (lags.scanned + lags.gain > SUITS)
     if late.any(axis=0).sum() > MOST_LATE * len(names) and np.any(away[late] > 0) and np.any(away[late] < 0):
         late[:] = False  # so many clocks do not go wrong both ways: it is something that the simulator lacks
-    found = [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
+    found = [f for i, name in enumerate(names) for f in one_late(lags.channels, inputs, away[:, i], late[:, i], name)]
     return [*found, *_all_late(lags, inputs, shared, total, step)]
 
 
@@ -52,7 +52,7 @@ def striking_findings(lags: Lags, names: Sequence[str], inputs: Sequence[str], s
     shared, _, late = _apart(lags, step)
     away = lags.seconds - shared[:, None]
     late &= np.abs(away) * lags.weight > STRIKING
-    return [f for i, name in enumerate(names) for f in _one_late(lags, inputs, away[:, i], late[:, i], name)]
+    return [f for i, name in enumerate(names) for f in one_late(lags.channels, inputs, away[:, i], late[:, i], name)]
 
 
 def _apart(lags: Lags, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -85,22 +85,22 @@ def _far_off(away: np.ndarray) -> np.ndarray:
     return np.asarray(np.any(np.abs(away) > APART * np.array(others).T, axis=0))
 
 
-def _one_late(
-    lags: Lags, inputs: Sequence[str], away: np.ndarray, late: np.ndarray, experiment: str
+def one_late(
+    channels: Sequence[str], inputs: Sequence[str], away: np.ndarray, late: np.ndarray, experiment: str
 ) -> Iterator[Finding]:
-    """An experiment whose outputs lag its inputs otherwise than in the others. Where not all outputs agree, the one
-    that differs is guilty."""
+    """An experiment whose outputs lag its inputs otherwise than in the others: by how much `away` (s), and whether it
+    is `late`, of each output. Where not all outputs agree, the one that differs is guilty."""
     if not late.any():
         return
     alone = len(late) > 1 and not late.all()
-    for c in np.flatnonzero(late) if alone else [int(np.argmax(np.abs(away)))]:
+    for c in np.flatnonzero(late).tolist() if alone else [int(np.argmax(np.abs(away)))]:
         seconds = float(away[c])
-        what = lags.channels[c] if alone else " and ".join(lags.channels)
+        what = channels[c] if alone else " and ".join(channels)
         yield Finding(
             problem="clock",
-            signal=lags.channels[c] if alone else None,
+            signal=channels[c] if alone else None,
             experiment=experiment,
-            alternatives=() if alone else (*inputs, *lags.channels),
+            alternatives=() if alone else (*inputs, *channels),
             seconds=seconds,
             blocks=True,
             detail=f"in {experiment}, {what} {_verb(seconds, alone or len(late) == 1)} the inputs by {_time(seconds)} "

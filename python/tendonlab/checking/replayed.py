@@ -1,0 +1,93 @@
+"""Late experiments of a rig that its inputs move as they prescribe, by a simulation.
+
+No inertia there tells a lag from friction with memory. But the simulator needs no output to run, so one simulation of
+each experiment is compared with its outputs as they were logged, and earlier or later."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tendonlab import _core
+from tendonlab.checking.clocks import LONG, one_late
+from tendonlab.checking.finding import Finding
+from tendonlab.data import Dataset
+from tendonlab.errors import DatasetError, NumericalError, ParameterError
+from tendonlab.fitting.case import Case, make_case
+from tendonlab.fitting.fitted import Fitted
+from tendonlab.fitting.rough import rough_fit
+from tendonlab.fitting.thinning import thinned
+from tendonlab.simulation.system import System
+
+STEP = 0.0025  # s, between lags that are tried, or a step of the logs
+LEAST = 3.0  # of these, by which an experiment must lag the others
+MENDED = 0.5  # share of its mean square error that is left of the one late experiment
+FEWEST = 3  # other experiments, which show the common clock
+NOBODY = 0.25  # share of what the late one gains by its lag that any other may gain by one
+
+
+def late_by_replay(dataset: Dataset, system: System) -> list[Finding]:
+    """The one experiment that the simulator, fitted roughly to all, follows much better with its outputs earlier or
+    later, where it does not follow any other so; nothing where that cannot be simulated."""
+    try:
+        few = thinned(dataset, system)
+        case = make_case(replace(few, experiments=tuple(replace(e, split="train") for e in few)), system)
+        if case.replay.kind != "free":
+            return []
+        fit = rough_fit(case, _core.Cancel())
+        tried = _tried(case)
+        left = np.array([_errors(case, fit, i, tried) for i in range(len(case.experiments))])
+    except (DatasetError, NumericalError, ParameterError):
+        return []
+    if len(left) <= FEWEST or not np.isfinite(left).all():
+        return []
+    return _standing_out(case, tried, left)
+
+
+def _tried(case: Case) -> np.ndarray:
+    """Lags from minus to plus `LONG`, s."""
+    step = max(STEP, max(float(np.median(np.diff(e.time))) for e in case.experiments))
+    num = int(LONG / step)
+    return step * np.arange(-num, num + 1)
+
+
+def _errors(case: Case, fit: Fitted, i: int, tried: np.ndarray) -> np.ndarray:
+    """Mean square error of the model over the sensors' noise in experiment i, by how much its outputs are late."""
+    time, measured = np.asarray(case.experiments[i].time), case.prepared[i].measured
+    outputs = np.asarray(case.run(i, fit.system, fit.initial[i])["outputs"])
+    inside = (time >= time[0] + LONG) & (time <= time[-1] - LONG)
+
+    def error(lag: float) -> float:
+        away = [
+            (np.interp(time[inside] + lag, time, measured[c]) - outputs[c, inside]) / case.noise[c]
+            for c in case.measured
+        ]
+        return float(np.nanmean(np.square(away)))
+
+    return np.array([error(lag) for lag in tried.tolist()])
+
+
+def _standing_out(case: Case, tried: np.ndarray, left: np.ndarray) -> list[Finding]:
+    """The finding where one experiment alone is far better at a lag of its own. `left` (experiments, lags)."""
+    common = int(np.median(np.argmin(left, axis=1)))
+    saved = 1.0 - left.min(axis=1) / left[:, common]
+    late, best = int(np.argmax(saved)), np.argmin(left, axis=1)
+    ends = best[late] in (0, len(tried) - 1)
+    if ends or abs(best[late] - common) < LEAST or saved[late] < 1.0 - MENDED:
+        return []
+    if np.delete(saved, late).max() > NOBODY * saved[late]:
+        return []
+    seconds = _least(tried, left[late], int(best[late])) - tried[common]
+    channels = [case.outputs[c] for c in case.measured]
+    inputs: Sequence[str] = case.dataset.inputs
+    away, all_late = np.full(len(channels), seconds), np.ones(len(channels), dtype=bool)
+    return list(one_late(channels, inputs, away, all_late, case.experiments[late].name))
+
+
+def _least(tried: np.ndarray, left: np.ndarray, k: int) -> float:
+    """Where the parabola through the least of `left`, at k, and its neighbours has its least."""
+    before, here, after = left[k - 1 : k + 2]
+    bend = before - 2.0 * here + after
+    return float(tried[k] + (0.5 * (before - after) / bend if bend > 0.0 else 0.0) * (tried[1] - tried[0]))
