@@ -18,6 +18,7 @@ from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.odd import odd_channels, odd_clocks, owned
 from tendonlab.checking.odd_units import odd_units
+from tendonlab.checking.proportions import odd_proportions
 from tendonlab.checking.replayed import late_by_replay
 from tendonlab.checking.samples import sample_findings
 from tendonlab.checking.scales import wrong_factors
@@ -44,7 +45,7 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     """Say what looks wrong with the logs of `dataset` themselves: signs, scales and units, lags, stamps, outliers,
     limits, copies. `system`: the simulator (the dataset's own unless given), whose equation of motion must hold.
 
-    Only an experiment that looks late is simulated: it takes seconds. How it works: docs/method.md."""
+    Simulated are experiments that look late, and rigs that prescribed inputs move. How it works: docs/method.md."""
     require_dataset(dataset)
     system = simulator_of(dataset, system)
     marked = {} if system.info.steady else marks(dataset)
@@ -86,7 +87,8 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
         return steps, []
     wrong = odd_units(equation, logs) or exchanged(equation, logs, marked)
     wrong = wrong or owned(wrong_factors(equation, logs), equation, logs, marked)
-    wrong = wrong or odd_channels(equation, logs, marked) or list(silent_inputs(equation, logs))
+    wrong = wrong or odd_channels(equation, logs, marked) or odd_proportions(equation.dataset, equation.system)
+    wrong = wrong or list(silent_inputs(equation, logs))
     if wrong:  # lags are judged once these are corrected
         return [*steps, *wrong], []
     late, notes = _clocks(equation, logs, marked)
@@ -105,8 +107,8 @@ def _clocks(
             return [], [UNDRIVEN]
         logs = left
     dataset, late = equation.dataset, lags(equation, logs)
-    alone = late_by_replay(dataset, equation.system) if simulated and not equation.moved else []
-    if alone := [f for f in confirmed(alone, dataset, equation.system) if f.blocks]:
+    alone = confirmed(late_by_replay(dataset, equation.system), dataset, equation.system) if simulated else []
+    if any(f.blocks for f in alone):
         return alone, []
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]

@@ -1,24 +1,21 @@
-"""Late experiments of a rig that its inputs move as they prescribe, by a simulation.
-
-No inertia there tells a lag from friction with memory. But the simulator needs no output to run, so one simulation of
-each experiment is compared with its outputs as they were logged, and earlier or later."""
+"""Late experiments of a rig whose simulation needs no output: one simulation of each experiment is compared with its
+outputs as they were logged, and earlier or later. Friction with memory, which looks like a lag, is part of it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from tendonlab import _core
 from tendonlab.checking.clocks import LONG, one_late
 from tendonlab.checking.finding import Finding
+from tendonlab.checking.free import free_case
 from tendonlab.data import Dataset
-from tendonlab.errors import DatasetError, NumericalError, ParameterError
-from tendonlab.fitting.case import Case, make_case
+from tendonlab.errors import NumericalError, ParameterError
+from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.rough import rough_fit
-from tendonlab.fitting.thinning import thinned
 from tendonlab.simulation.system import System
 
 STEP = 0.0025  # s, between lags that are tried, or a step of the logs
@@ -31,19 +28,16 @@ NOBODY = 0.25  # share of what the late one gains by its lag that any other may 
 def late_by_replay(dataset: Dataset, system: System) -> list[Finding]:
     """The one experiment that the simulator, fitted roughly to all, follows much better with its outputs earlier or
     later, where it does not follow any other so; nothing where that cannot be simulated."""
+    case = free_case(dataset, system)
+    if case is None or len(case.experiments) <= FEWEST:
+        return []
+    tried = _tried(case)
     try:
-        few = thinned(dataset, system)
-        case = make_case(replace(few, experiments=tuple(replace(e, split="train") for e in few)), system)
-        if case.replay.kind != "free":
-            return []
         fit = rough_fit(case, _core.Cancel())
-        tried = _tried(case)
         left = np.array([_errors(case, fit, i, tried) for i in range(len(case.experiments))])
-    except (DatasetError, NumericalError, ParameterError):
+    except (NumericalError, ParameterError):
         return []
-    if len(left) <= FEWEST or not np.isfinite(left).all():
-        return []
-    return _standing_out(case, tried, left)
+    return _standing_out(case, tried, left) if np.isfinite(left).all() else []
 
 
 def _tried(case: Case) -> np.ndarray:
