@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -37,10 +38,7 @@ def _at_belief(case: Case, rough: Fitted, pool: ThreadPoolExecutor) -> dict[int,
     """Of each repeat from what is believed of its initial state; nothing is known of one that cannot be simulated."""
 
     def seen(i: int) -> Sensitivities:
-        try:
-            return sensitivities(case, rough.system, i, case.own_mean(i).tolist())
-        except NumericalError:
-            return Sensitivities.unknown(case.prepared[i].measured)
+        return _seen(case, rough, i, case.own_mean(i).tolist(), required=False)
 
     repeats = [i for i, experiment in enumerate(case.experiments) if experiment.repeat is not None]
     return dict(zip(repeats, pool.map(seen, repeats), strict=True))
@@ -64,11 +62,16 @@ def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list
 
     def seen(i: int) -> Sensitivities:
         start = initial.get(i, case.own_mean(i).tolist())
-        try:
-            return sensitivities(case, fitted.system, i, start)
-        except NumericalError:
-            if i in case.train:
-                raise
-            return Sensitivities.unknown(case.prepared[i].measured)
+        return _seen(case, fitted, i, start, required=i in initial)
 
     return list(pool.map(seen, range(len(case.experiments))))
+
+
+def _seen(case: Case, fitted: Fitted, i: int, own: Sequence[float], *, required: bool) -> Sensitivities:
+    """Of experiment i; nothing is known of one that cannot be simulated, unless it is `required`: then NumericalError."""
+    try:
+        return sensitivities(case, fitted.system, i, own)
+    except NumericalError:
+        if required:
+            raise
+        return Sensitivities.unknown(case.prepared[i].measured)
