@@ -68,7 +68,7 @@ def _sensitivities(case: Case, fitted: Fitted, pool: ThreadPoolExecutor) -> list
 
 
 def _seen(case: Case, fitted: Fitted, i: int, own: Sequence[float], *, required: bool) -> Sensitivities:
-    """Of experiment i; nothing is known of one that cannot be simulated, unless it is `required`: then NumericalError."""
+    """Of experiment i; nothing is known of one that cannot be simulated, or if it is `required`, that is an error."""
     try:
         return sensitivities(case, fitted.system, i, own)
     except NumericalError:
