@@ -11,6 +11,7 @@ from tendonlab.blind.rig import draw_rig
 from tendonlab.blind.strength import Strength
 from tendonlab.blind.systems import SYSTEMS
 from tendonlab.blind.write import record, write_dataset
+from tendonlab.checking.free import free_case
 from tendonlab.checking.proportions import _odd, _Seen, odd_proportions
 
 STRONG = Strength(
@@ -30,7 +31,7 @@ def test_a_cable_force_in_another_unit_is_found_beside_friction_that_the_simulat
     fault = Fault(problem="scale", signals=("cable_force_2",), factor=factor) if factor != 1.0 else None
     write_dataset(rig, run, tmp_path / "rig", name="rig", description="", fault=fault)
     logs = tl.load(tmp_path / "rig")
-    found = [(f.problem, f.signal, f.factor) for f in odd_proportions(logs, logs.system())]
+    found = [(f.problem, f.signal, f.factor) for f in odd_proportions(free_case(logs, logs.system()))]
     assert found == ([("scale", "cable_force_2", pytest.approx(factor))] if fault else [])
 
 
@@ -62,4 +63,4 @@ def test_a_rig_whose_motor_is_commanded_is_left_alone(tmp_path: Path) -> None:
     rig = draw_rig(np.random.default_rng(5), effect="", kind="parameters_only", system=system, excitation="rich")
     write_dataset(rig, record([rig], [STRONG])[0], tmp_path / "rig", name="rig", description="")
     logs = tl.load(tmp_path / "rig")
-    assert odd_proportions(logs, logs.system()) == []
+    assert odd_proportions(free_case(logs, logs.system())) == []

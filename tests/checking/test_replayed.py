@@ -15,6 +15,7 @@ from tendonlab.blind.rig import draw_rig
 from tendonlab.blind.strength import Strength
 from tendonlab.blind.systems import SYSTEMS
 from tendonlab.blind.write import record, write_dataset
+from tendonlab.checking.free import free_case
 from tendonlab.checking.replayed import _least, _standing_out, late_by_replay
 
 STRONG = Strength(
@@ -34,7 +35,7 @@ def test_a_late_run_is_found_beside_friction_that_the_simulator_lacks(
     fault = Fault(problem="clock", experiment="run-03", seconds=seconds) if seconds else None
     write_dataset(rig, run, tmp_path / "rig", name="rig", description="", fault=fault)
     rig_logs = tl.load(tmp_path / "rig")
-    found = late_by_replay(rig_logs, rig_logs.system())
+    found = late_by_replay(free_case(rig_logs, rig_logs.system()))
     assert [f.experiment for f in found] == ["run-03"] * bool(seconds)
     if seconds:
         assert_allclose([f.seconds or 0.0 for f in found], seconds, atol=0.003)
@@ -89,4 +90,4 @@ def test_a_rig_in_a_loop_tells_nothing(tmp_path: Path) -> None:
     fault = Fault(problem="clock", experiment="run-03", seconds=0.04)
     write_dataset(rig, run, tmp_path / "rig", name="rig", description="", fault=fault)
     logs = tl.load(tmp_path / "rig")
-    assert late_by_replay(logs, logs.system()) == []
+    assert late_by_replay(free_case(logs, logs.system())) == []

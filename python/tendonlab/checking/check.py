@@ -14,6 +14,7 @@ from tendonlab.checking.driven import free_runs
 from tendonlab.checking.equation import Equation
 from tendonlab.checking.exchanged import exchanged
 from tendonlab.checking.finding import PROBLEMS, Check, Finding
+from tendonlab.checking.free import free_case
 from tendonlab.checking.lags import lags
 from tendonlab.checking.logs import Logs, read_logs
 from tendonlab.checking.odd import odd_channels, odd_clocks, owned
@@ -45,7 +46,8 @@ def check(dataset: Dataset, *, system: System | None = None) -> Check:
     """Say what looks wrong with the logs of `dataset` themselves: signs, scales and units, lags, stamps, outliers,
     limits, copies. `system`: the simulator (the dataset's own unless given), whose equation of motion must hold.
 
-    Simulated are experiments that look late, and rigs that prescribed inputs move. How it works: docs/method.md."""
+    Experiments that look late are simulated, and so are rigs whose motor is not commanded: that takes seconds. How it
+    works: docs/method.md."""
     require_dataset(dataset)
     system = simulator_of(dataset, system)
     marked = {} if system.info.steady else marks(dataset)
@@ -87,10 +89,14 @@ def _by_the_equation(equation: Equation, logs: Logs, marked: Marks) -> tuple[lis
         return steps, []
     wrong = odd_units(equation, logs) or exchanged(equation, logs, marked)
     wrong = wrong or owned(wrong_factors(equation, logs), equation, logs, marked)
-    wrong = wrong or odd_channels(equation, logs, marked) or odd_proportions(equation.dataset, equation.system)
-    wrong = wrong or list(silent_inputs(equation, logs))
+    wrong = wrong or odd_channels(equation, logs, marked)
+    beside = None if wrong else free_case(equation.dataset, equation.system)
+    wrong = wrong or odd_proportions(beside) or list(silent_inputs(equation, logs))
     if wrong:  # lags are judged once these are corrected
         return [*steps, *wrong], []
+    alone = confirmed(late_by_replay(beside), equation.dataset, equation.system)
+    if any(f.blocks for f in alone):
+        return [*steps, *alone], []
     late, notes = _clocks(equation, logs, marked)
     return [*steps, *late], notes
 
@@ -107,9 +113,6 @@ def _clocks(
             return [], [UNDRIVEN]
         logs = left
     dataset, late = equation.dataset, lags(equation, logs)
-    alone = confirmed(late_by_replay(dataset, equation.system), dataset, equation.system) if simulated else []
-    if any(f.blocks for f in alone):
-        return alone, []
     if late.level > EXPLAINED:
         return [], [UNEXPLAINED]
     step = float(np.median([np.median(np.diff(e.time)) for e in dataset.experiments]))

@@ -11,13 +11,10 @@ import numpy as np
 
 from tendonlab.checking.conversions import nearest
 from tendonlab.checking.finding import Finding
-from tendonlab.checking.free import free_case
-from tendonlab.data import Dataset
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.problem import initial_state
 from tendonlab.report.words import listing
-from tendonlab.simulation.system import System
 
 LARGE = 0.5  # of its rms, beyond which a simulated output tells a ratio
 BELIEVED, ALIKE = 1.5, 1.2  # factor within which the others must be predicted, and as which they must agree
@@ -39,12 +36,12 @@ class _Seen(NamedTuple):
         return float(np.median(self.logged[large] / self.simulated[large])) if large.any() else np.nan
 
 
-def odd_proportions(dataset: Dataset, system: System) -> list[Finding]:
-    """Outputs that alone among those of their dimension read a multiple, by a ratio of units, of what `system` predicts
-    from what is believed; nothing where that cannot be simulated."""
-    case = free_case(dataset, system)
+def odd_proportions(case: Case | None) -> list[Finding]:
+    """Outputs of a rig (`free_case`) that alone among those of their dimension read a multiple, by a ratio of units, of
+    what the simulator predicts from what is believed; nothing where that cannot be simulated."""
     if case is None:
         return []
+    system = case.system
     try:
         outputs = [np.asarray(case.run(i, system, initial_state(case, system, i))["outputs"]) for i in _all(case)]
     except NumericalError:
@@ -77,9 +74,10 @@ def _odd(alike: list[_Seen]) -> Iterator[Finding]:
             continue
         unit = nearest(one.ratio / usual)
         if abs(np.log(one.ratio / usual / unit.ratio)) < EXACT and _is_factor(one, usual, unit.ratio):
+            times = f"{unit.label} {'times' if unit.ratio > 1.0 else 'of'}"
+            near = listing(other.name for other in alike if other is not one)
             text = (
-                f"{one.name} is {unit.label} times what the simulator predicts, and "
-                f"{listing(other.name for other in alike if other is not one)} as predicted; "
+                f"{one.name} reads {times} what the simulator predicts, where it predicts {near} well; "
                 f"check the unit of {one.name} ({unit.words}?)"
             )
             yield Finding(problem="scale", signal=one.name, factor=unit.ratio, blocks=True, detail=text)

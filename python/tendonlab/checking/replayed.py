@@ -8,28 +8,26 @@ from collections.abc import Sequence
 import numpy as np
 
 from tendonlab import _core
+from tendonlab.checking.aligned import MENDED
 from tendonlab.checking.clocks import LONG, one_late
 from tendonlab.checking.finding import Finding
-from tendonlab.checking.free import free_case
-from tendonlab.data import Dataset
 from tendonlab.errors import NumericalError, ParameterError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.rough import rough_fit
-from tendonlab.simulation.system import System
 
 STEP = 0.0025  # s, between lags that are tried, or a step of the logs
 LEAST = 3.0  # of these, by which an experiment must lag the others
-MENDED = 0.5  # share of its mean square error that is left of the one late experiment
+SHORTEST = 4 * LONG  # s: of an experiment, of which both ends are left out
 FEWEST = 3  # other experiments, which show the common clock
 NOBODY = 0.25  # share of what the late one gains by its lag that any other may gain by one
 
 
-def late_by_replay(dataset: Dataset, system: System) -> list[Finding]:
-    """The one experiment that the simulator, fitted roughly to all, follows much better with its outputs earlier or
-    later, where it does not follow any other so; nothing where that cannot be simulated."""
-    case = free_case(dataset, system)
-    if case is None or len(case.experiments) <= FEWEST:
+def late_by_replay(case: Case | None) -> list[Finding]:
+    """The one experiment of a rig (`free_case`) that the simulator, fitted roughly to all, follows much better with its
+    outputs earlier or later, where it does not follow any other so; nothing where that cannot be simulated, or where an
+    experiment is too short."""
+    if case is None or len(case.experiments) <= FEWEST or min(e.duration for e in case.experiments) < SHORTEST:
         return []
     tried = _tried(case)
     try:
@@ -66,7 +64,7 @@ def _errors(case: Case, fit: Fitted, i: int, tried: np.ndarray) -> np.ndarray:
 def _standing_out(case: Case, tried: np.ndarray, left: np.ndarray) -> list[Finding]:
     """The finding where one experiment alone is far better at a lag of its own. `left` (experiments, lags)."""
     common = int(np.median(np.argmin(left, axis=1)))
-    saved = 1.0 - left.min(axis=1) / left[:, common]
+    saved = 1.0 - left.min(axis=1) / np.fmax(left[:, common], np.finfo(float).tiny)
     late, best = int(np.argmax(saved)), np.argmin(left, axis=1)
     ends = best[late] in (0, len(tried) - 1)
     if ends or abs(best[late] - common) < LEAST or saved[late] < 1.0 - MENDED:
