@@ -161,6 +161,18 @@ def test_a_clear_effect_beside_others_may_leave_more(
     assert search.selected == ((FIRST, SECOND) if kept else (FIRST,))
 
 
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize(
+    ("tuned", "after", "kept"), [(6.0, 3.5, True), (6.0, 3.7, False), (10.0, 3.7, True), (6.0, 4.9, False)]
+)
+def test_an_effect_beside_others_removes_half_where_something_unknown_is_left(
+    found: Callable[..., Search], shop: Callable[..., Any], repeated: bool, tuned: float, after: float, kept: bool
+) -> None:
+    """Of 24 a half is 12, which is left at sqrt(13) = 3.6. Of 99 both effects remove 0.87 at 3.7, of 35 never 0.85."""
+    search = confirm.confirmed(found(FIRST, SECOND, repeated=repeated), shop(tuned, 5.0, after, gain=50.0))
+    assert search.selected == ((FIRST, SECOND) if kept else (FIRST,))
+
+
 def test_nothing_is_added_where_others_left_less(found: Callable[..., Search], shop: Callable[..., Any]) -> None:
     search = confirm.confirmed(found(FIRST, SECOND), shop(10.0, 0.8, 0.9, gain=50.0))
     assert search.selected == (FIRST,)
@@ -242,6 +254,19 @@ def test_the_report_says_what_was_refuted(found: Callable[..., Search], shop: Ca
     assert said.startswith("Not established: joint:stribeck. The training experiments speak for it, but on held-out")
     assert "less than 25 % of the excess error" in said
     assert notes._on_the_refuted(found(FIRST)) == []
+
+
+def test_the_report_says_what_removes_too_little_beside_others(
+    found: Callable[..., Search], shop: Callable[..., Any]
+) -> None:
+    (said,) = notes._on_the_refuted(
+        confirm.confirmed(found(FIRST, SECOND, repeated=True), shop(6.0, 5.0, 4.9, gain=50.0))
+    )
+    assert said.startswith("Not established: actuation:delay.")
+    assert said.endswith("or keep more than 50 % of what the other effects leave, beside something unknown.")
+    (said,) = notes._on_the_refuted(confirm.confirmed(found(FIRST, SECOND), shop(6.0, 5.0, 4.9, gain=50.0)))
+    assert "less than 60 % of what the other effects leave" in said
+    assert said.endswith("50 % where something unknown is left).")
 
 
 def test_what_an_effect_gains_counts_beside_those_before_alone(

@@ -6,21 +6,25 @@ held-out experiments are predicted worse with that effect, the imitation fails. 
 by chance; an effect that gains on them alone explains that chance.
 
 Effects of rigs have other forms than the library's. What the form of the first effect leaves, a further one may remove
-in part, on all experiments alike."""
+in part, on all experiments alike. So may a further one that imitates a cause which the library lacks."""
 
 from __future__ import annotations
 
 from tendonlab.diagnosis.answer import heldout
+from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.floor import renewed
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import HIDDEN, Trial, relief, restores_belief
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.noise import Floor
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
 FURTHER = 0.6  # the same of an effect beside others: one that only mends the form of theirs removes 0 to 0.56
 TELLING = 0.4  # the same where left-out training experiments gain `HIDDEN` nats: 13 errors of forms gained 62 at most
-NEAR = 4.0  # mean square over the floor with it, beyond which more is missing and that share tells nothing
+NEAR = 4.0  # mean square over the floor with it, beyond which more is missing and that share tells less
+WHOLE = 0.85  # share of the held-out excess that all effects remove, below which something unknown is left
+BESIDE_UNKNOWN = 0.5  # share of it that the last of several must then remove: five imitations removed 0.05 to 0.36
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 MAINLY = 0.25  # share of its gain that beliefs must make up, to confirm an effect without held-out experiments
@@ -36,22 +40,21 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are predicted worse with the last effect, or hardly better though the training
     experiments predict much; without repeats where it removes little of what the model without it leaves, and may do
-    even that by chance, or where, near the floor, an effect beside others leaves much of what they leave."""
+    even that by chance, or where an effect beside others leaves much of what they leave."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     gained, is_first = _gained(search), len(search.selected) == 1
     # What beliefs tell needs no experiment.
     is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * gained
     if not case.test or (is_first and is_believed):
         return False
-    models = [heldout.models(case, m, case.test) for m in pair]
+    models = [heldout.models(case, m, case.test) for m in (search.tuned, *pair)]
     try:
-        (before, after), judged, _ = heldout.replay_all(case, models, case.test)
+        (tuned, before, after), judged, _ = heldout.replay_all(case, models, case.test)
     except NumericalError:  # there is none that both models simulate
         return False
     floor = fitter.floor.reached_by(heldout.rms(after))
     share = heldout.explained(before, after, floor)
-    is_near = not floor.repeated and heldout.level(after, floor) < NEAR
-    if not is_first and is_near and (share or 0.0) < (TELLING if gained > HIDDEN else FURTHER):
+    if not is_first and (share or 0.0) < _least_share(tuned, after, floor, gained):
         return True
     if is_believed:
         return False
@@ -60,6 +63,16 @@ def _is_refuted(search: Search) -> bool:
         predicted = CARRIED * gained * len(judged) / len(case.train)
         return gain["mean"] < max(0.0, min(SURE * gain["se"], predicted))
     return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
+
+
+def _least_share(tuned: Replayed, after: Replayed, floor: Floor, gained: float) -> float:
+    """Share of the held-out excess that an effect beside others must remove, which gained so many nats on left-out
+    training experiments."""
+    if heldout.level(after, floor) >= NEAR:
+        return BESIDE_UNKNOWN if (heldout.explained(tuned, after, floor) or 0.0) < WHOLE else 0.0
+    if floor.repeated:
+        return 0.0
+    return TELLING if gained > HIDDEN else FURTHER
 
 
 def _gained(search: Search) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.diagnosis.answer import where
-from tendonlab.diagnosis.answer.confirm import CONFIRMED, FURTHER, TELLING
+from tendonlab.diagnosis.answer.confirm import BESIDE_UNKNOWN, CONFIRMED, FURTHER, TELLING
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
@@ -148,11 +148,19 @@ def _on_wide_intervals(search: Search) -> list[str]:
 def _on_the_refuted(search: Search) -> list[str]:
     """Effects that held-out experiments refute: first one that stood alone, then those beside others."""
     num_alone = 0 if search.selected else 1
-    chance = f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
-    against = "held-out ones are predicted worse with it, or hardly better" if search.fitter.floor.repeated else chance
-    telling = f"{100 * TELLING:.0f} % where left-out training ones gain {HIDDEN:.0f} nats"
-    mends = f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave ({telling})"
-    beside = against if search.fitter.floor.repeated else mends
+    if search.fitter.floor.repeated:
+        against = "held-out ones are predicted worse with it, or hardly better"
+        kept = f"keep more than {100 - 100 * BESIDE_UNKNOWN:.0f} % of what the other effects leave"
+        beside = f"{against}, or {kept}, beside something unknown"
+    else:
+        against = (
+            f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
+        )
+        beside = (
+            f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave ("
+            f"{100 * TELLING:.0f} % where left-out training ones gain {HIDDEN:.0f} nats, "
+            f"{100 * BESIDE_UNKNOWN:.0f} % where something unknown is left)"
+        )
     reasons = [(search.refuted[:num_alone], against), (search.refuted[num_alone:], beside)]
     return [
         f"Not established: {', '.join(names)}. The training experiments speak for it, but {why}."
