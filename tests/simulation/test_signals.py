@@ -1,8 +1,10 @@
 """Signals and starts from samples: lines and sines whose position, speed, noise and scales are known."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
+import tendonlab as tl
 from tendonlab.simulation.signals import motion_at_start, scales_of
 from tendonlab.simulation.start import Start
 
@@ -109,3 +111,25 @@ def test_the_start_is_known_as_well_as_the_measured_axis_tells() -> None:
 def test_only_a_start_that_follows_something_else_depends_on_the_shape() -> None:
     assert start().is_rigid
     assert not start(follows=(0, None, None)).is_rigid
+
+
+@pytest.mark.parametrize("resolution", [0.0, 5e-4])
+def test_a_sheath_holds_the_torque_at_which_its_drive_stops_dead(resolution: float) -> None:
+    """The gate closes in the sample of the stop, though the velocity is noisy: a curve through the stop would hold it
+    open while the torque falls on by 1 N·m a sample. Noise of the velocity alone leaves friction as it is."""
+    gate = {"threshold_velocity": 0.01, "threshold_slope": 1e7}
+    shape = {"input_radius": 0.05, "output_radius": 0.05, "sheath_length": 1.0, "cable_stiffness": 1e5}
+    friction = {"friction_coefficient": 0.055, "static_friction_coefficient": 0.06, "stribeck_velocity": 0.05}
+    numbers = {**gate, **shape, **friction, "pretension": 150.0, "wrap_angle": 3.0}
+    pair = tl.System("bowden_pair", effects=("sheath:capstan",), parameters=numbers)
+    time = 0.002 * np.arange(1000)
+    velocity = np.where(time < 1.0, 0.4 * np.cos(time), 0.0)
+    torque = 10.0 - 500.0 * np.clip(time - 0.998, 0.0, 0.01)
+    noisy = velocity + 2e-3 * np.random.default_rng(1).standard_normal(len(time))
+    noisy = np.round(noisy / resolution) * resolution if resolution else noisy
+    held = [
+        pair.simulate(pd.DataFrame({"input_torque": torque, "input_velocity": v}, index=time))["output_torque"]
+        for v in (velocity, noisy)
+    ]
+    np.testing.assert_allclose(held[1][500:], held[0][500:], atol=0.02)
+    np.testing.assert_allclose(held[0][500:], held[0].iloc[500], atol=1e-9)

@@ -6,10 +6,11 @@ namespace tendonlab::systems {
 ///   target = K_in tau_in - friction(v),   tau_out[k] = h target + (1 - h) tau_out[k-1]
 /// h: transmission::VelocityGate. K_in = r_out/r_in unless the sheath is bent unevenly. The sheath slides with the
 /// velocity of the drive, less the part that only stretches the cables (`cable:compliance`), and carries the torque of
-/// the output. The velocity is that of a smooth curve near its samples: under their noise the gate would chatter. The
-/// output before the first sample is the first one measured (S3 sec. 2.1); where none was, K_in tau_in, the middle of
-/// the loop: 0 from rest. A bristle (`sheath:presliding`) replaces the gate by its share. Axial stiffness and length
-/// cancel out of the torque of cables that do not stretch.
+/// the output. The velocity is that of a smooth curve within the noise of its samples, under which the gate would
+/// chatter, and where the curve misses a sample by more, as at a sudden stop, that sample. The output before the first
+/// sample is the first one measured (S3 sec. 2.1); where none was, K_in tau_in, the middle of the loop: 0 from rest. A
+/// bristle (`sheath:presliding`) replaces the gate by its share. Axial stiffness and length cancel out of the torque of
+/// cables that do not stretch.
 ///
 /// Of a shape's curvature the torque sees two numbers up to order (mu theta)³: the wrap angle and the mean angle turned
 /// along the sheath, which `curvature_skew` states as the linear curvature that has it.

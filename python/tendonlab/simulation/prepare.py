@@ -15,7 +15,7 @@ from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.command import fed_noise
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.sense import EXACT, last_sense
-from tendonlab.simulation.signals import averaged, hold, linear, scales_of, sloped, smooth, smoothed
+from tendonlab.simulation.signals import averaged, followed, hold, linear, scales_of, sloped, smooth, smoothed
 from tendonlab.simulation.start import Start, start_of
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ def _inputs(experiment: Experiment, system: Simulator, replay: Replay) -> list[_
     for k, given in enumerate(system.info.inputs):
         if given.name in data.columns:
             values = _finite(experiment, given.name)
-            signals.append(_between(experiment, given)(time, values))
+            signals.append(_between(experiment, given, system)(time, values))
         elif given.required and given.replaced_by not in data.columns and not (k == 0 and replay.kind == "controller"):
             raise DatasetError(
                 f"input {given.name!r} was not logged; the {replay.kind} replay of {system.kind} needs it"
@@ -184,13 +184,16 @@ def is_held(experiment: Experiment, given: InputInfo) -> bool:
     return experiment.holds.get(given.name, given.between == "hold")
 
 
-def _between(experiment: Experiment, given: InputInfo) -> Callable[[np.ndarray, np.ndarray], _core.Signal]:
+def _between(
+    experiment: Experiment, given: InputInfo, system: Simulator
+) -> Callable[[np.ndarray, np.ndarray], _core.Signal]:
     """How an input goes from sample to sample. A switch has no mean that is smooth."""
     if experiment.averaged and given.dimension != "ratio":
         return averaged
     if is_held(experiment, given):
         return hold
-    return {"smooth": smoothed, "sloped": sloped}.get(given.between, linear)
+    smooth = followed if system.info.sampled else smoothed
+    return {"smooth": smooth, "sloped": sloped}.get(given.between, linear)
 
 
 def _require_time(experiment: Experiment) -> None:

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from tendonlab import _core
-from tendonlab.simulation.reading import is_noiseless
+from tendonlab.simulation.reading import common_step, is_noiseless, noise_sd
 
 AT_ONCE = 0.02  # s from the first sample, within which a signal shows how an experiment begins
+BEYOND_NOISE = 3.0  # sd of noise, or of rounding, within which a smooth curve may miss a sample
 CLEAR = 4.0  # sd from 0 of a velocity or a curvature that is there
 
 
@@ -44,6 +45,17 @@ def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     carry no noise, which leaves nothing to choose by."""
     kept = np.isfinite(values)
     return _from_pieces(spline_near(time[kept], values[kept]))
+
+
+def followed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+    """At each sample the curve of `smoothed`; where the curve misses a sample by more than noise may, that sample as
+    logged, for a smooth curve takes a sudden stop for a gradual one."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    near = spline_near(time, values)
+    curve, noise = near(time), max(noise_sd(values), (common_step([values]) or 0.0) / np.sqrt(12.0))
+    missed = np.abs(values - curve) > BEYOND_NOISE * noise
+    return _from_pieces(CubicHermiteSpline(time, np.where(missed, values, curve), near(time, 1)))
 
 
 def sloped(time: np.ndarray, values: np.ndarray) -> _core.Signal:

@@ -26,6 +26,7 @@ NEAR = 4.0  # mean square over the floor with it, beyond which more is missing a
 WHOLE = 0.85  # share of the held-out excess that all effects remove, below which something unknown is left
 BESIDE_UNKNOWN = 0.5  # share of it that the last of several must then remove: five imitations removed 0.05 to 0.36
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
+MOSTLY = 0.5  # share of the held-out excess beyond which any gain there is enough
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 MAINLY = 0.25  # share of its gain that beliefs must make up, to confirm an effect without held-out experiments
 
@@ -61,7 +62,8 @@ def _is_refuted(search: Search) -> bool:
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, judged)
     if fitter.floor.repeated:
         predicted = CARRIED * gained * len(judged) / len(case.train)
-        return gain["mean"] < max(0.0, min(SURE * gain["se"], predicted))
+        needed = 0.0 if (share or 0.0) > MOSTLY else max(0.0, min(SURE * gain["se"], predicted))
+        return gain["mean"] < needed
     return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
 
 

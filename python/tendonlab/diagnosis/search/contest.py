@@ -13,6 +13,7 @@ from tendonlab.diagnosis.discrepancy import may_be_noise
 from tendonlab.diagnosis.search.halves import predicts_better
 from tendonlab.diagnosis.search.refit import at_believed_values, strained
 from tendonlab.diagnosis.search.screen import Screened
+from tendonlab.diagnosis.search.slow import mends_slow_errors
 from tendonlab.diagnosis.search.trial import (
     CLEAR,
     DETECT,
@@ -220,9 +221,9 @@ def _worth_adding(
     """Not far above a floor from repeats, the first effect must help in each experiment. Near the floor, which a few
     repeats determine to a few per cent, an effect must also remove a share of the error that matters, or tell clearly
     and remove a tenth of what lies above the floor.
-    With repeats, a further one must be no error of a shape. Without, it must explain enough, or leave what may be
-    noise. Near the floor, beyond the first effect and where it explains little, it must predict experiments that it
-    was not fitted to."""
+    With repeats, a further one must be no error of a shape, unless it mends slow errors. Without, it must explain
+    enough, or leave what may be noise. Near the floor, beyond the first effect and where it explains little, it must
+    predict experiments that it was not fitted to."""
     near_floor, repeated, first = base.mean_square < NEAR_FLOOR, fitter.floor.repeated, trials[0].fitted
     if not (further or _helps_in_each(fitter, base, trials[0])):
         return False
@@ -232,11 +233,13 @@ def _worth_adding(
     is_clear = tells and trials[0].lost < LOST and not is_little and counts
     is_beside = is_level_beside(base, trials[0])
     matters = MATTERS_BESIDE if is_beside else MATTERS
-    if near_floor and (is_beside or not is_clear) and first.mean_square > (1.0 - matters) * base.mean_square:
+    mends = near_floor and repeated and further and mends_slow_errors(fitter, base, trials[0])
+    too_little = first.mean_square > (1.0 - matters) * base.mean_square
+    if near_floor and (is_beside or not is_clear) and too_little and not mends:
         return False
     if is_beside and not repeated and not explains_half(base, first):
         return False
-    if repeated and further:
+    if repeated and further and not mends:
         elsewhere = gain_elsewhere(base, trials[0], heard=fitter.case.replay.output)
         if not is_no_shape(base, trials, largest_gain, elsewhere=elsewhere):
             return False

@@ -205,14 +205,14 @@ def is_no_shape(base: Fitted, trials: Sequence[Trial], largest_gain: float, *, e
     larger share."""
     gain = trials[0].evidence_gain
     matters = base.mean_square <= NEAR_FLOOR or not removes_little(base, trials[0])
-    if _is_friction_elsewhere(base, trials[0]):
+    if is_friction_elsewhere(base, trials[0]):
         return gain > SAME_LAW * largest_gain and matters
     if matters and (gain > FURTHER_SHARE * largest_gain or elsewhere > HIDDEN):
         return True
     return gain > HIDDEN and explains_enough(base, trials)
 
 
-def _is_friction_elsewhere(base: Fitted, trial: Trial) -> bool:
+def is_friction_elsewhere(base: Fitted, trial: Trial) -> bool:
     """Whether the model has the law of the trial's effect in another element already, where its shape could err."""
     law = trial.effect.split(":")[-1]
     there = any(name.split(":")[-1] == law for name in base.added)
