@@ -13,9 +13,11 @@ import pytest
 
 from tendonlab.errors import ParameterError
 from tendonlab.report import effects_table
+from tendonlab.report.blocks import Text
 from tendonlab.report.diagnosis import Diagnosis, SideTable
 from tendonlab.report.document import _facts
 from tendonlab.report.figures import LARGEST_SVG, embed
+from tendonlab.report.sections.location import location
 from tendonlab.report.write import prepare_folder
 
 NASTY = "<script>alert(\"rig\")</script> & $x$ 'quoted'"
@@ -319,6 +321,14 @@ def test_an_element_is_named_in_words_only_where_it_is_likely(with_effect: Diagn
     assert "On held-out experiments no output errs beyond its noise floor." in at_floor
     assert "is largest" not in at_floor
     assert "most likely comes from" in read(with_effect, tmp_path)[0]
+
+
+def test_at_the_floor_no_output_is_said_to_carry_the_error(with_effect: Diagnosis) -> None:
+    gap = {"joint_angle": {"noise_floor": 1.0, "nominal": 9.0, "refitted": 1.02, "with_effect": 1.0}}
+    brief = location(replace(with_effect, gap=gap))[0]
+    assert isinstance(brief, Text)
+    assert "no output errs by more than 1.1 times its noise floor." in brief.text
+    assert "is largest" not in brief.text
 
 
 @pytest.mark.parametrize(

@@ -279,12 +279,12 @@ def test_a_value_has_the_digits_of_its_interval() -> None:
     assert numbers.estimate(None, (None, 1.0), 2) == ("–", "")
 
 
-def test_what_effects_leave_far_above_the_floor_is_told(with_effect: Diagnosis) -> None:
+def test_what_effects_leave_above_the_floor_is_told(with_effect: Diagnosis) -> None:
     gap = {"joint_angle": {"noise_floor": 1.0, "nominal": 90.0, "refitted": 80.0, "with_effect": 8.3}}
     told = replace(with_effect, gap=gap, indistinguishable=()).sentence
     assert "What is left is 8.3 times the noise floor: another form of this effect, or a smaller effect, may" in told
     assert "Probability that this is the main explanation" in told
-    gap["joint_angle"]["with_effect"] = 1.9
+    gap["joint_angle"]["with_effect"] = 1.4
     told = replace(with_effect, gap=gap, indistinguishable=()).sentence
     assert "left" not in told
     assert "Probability that this is the whole explanation" in told

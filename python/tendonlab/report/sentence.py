@@ -10,7 +10,7 @@ from tendonlab.report.words import capital, changed_friction, phrases
 if TYPE_CHECKING:
     from tendonlab.report.diagnosis import Diagnosis
 
-FAR = 2.0  # noise floors of held-out error from which on effects leave something to be told
+FAR = 1.5  # noise floors of held-out error from which on effects leave something to be told
 ON_FLOOR = 1.1  # noise floors of held-out error that read as the floor itself
 WORSE = -0.05  # shrinkage below which the gap has grown, and not by rounding
 EVEN = 0.5  # probability below which what was selected is not called established

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tendonlab.report import numbers, words
 from tendonlab.report.blocks import Block, Cell, Columns, Figure, Table, Text
 from tendonlab.report.diagnosis import Diagnosis
+from tendonlab.report.sentence import ON_FLOOR
 
 CLEAR = 0.05  # p-value up to which the summary says that the error is concentrated in a regime
 LEAST = 0.005  # probability below which an element is not worth a row of its own
@@ -41,10 +43,13 @@ def _summary(diagnosis: Diagnosis) -> str:
     largest = []
     if signals := diagnosis.where["signals"]:
         first = max(signals, key=lambda entry: entry["share"])
-        if first["share"] == 0.0:
+        if first["share"] == 0.0 or _largest_error(diagnosis) < ON_FLOOR:
+            beyond = "beyond" if first["share"] == 0.0 else f"by more than {ON_FLOOR} times"
             is_unknown = diagnosis.verdict == "unknown_effect"
             elsewhere = " What is missing shows in the training experiments." if is_unknown else ""
-            return " ".join([*sentences, f"On held-out experiments no output errs beyond its noise floor.{elsewhere}"])
+            return " ".join(
+                [*sentences, f"On held-out experiments no output errs {beyond} its noise floor.{elsewhere}"]
+            )
         largest.append(f"in the {words.words(first['signal'])} ({_of_excess(first['share'])})")
     if clear := [r for r in diagnosis.where["regimes"] if r.get("p_value") is not None and r["p_value"] <= CLEAR]:
         first = max(clear, key=lambda entry: entry["share"] or 0.0)
@@ -54,6 +59,11 @@ def _summary(diagnosis: Diagnosis) -> str:
     if largest:
         sentences.append(f"{'It' if sentences else 'The remaining error'} is largest {', '.join(largest)}.")
     return " ".join(sentences)
+
+
+def _largest_error(diagnosis: Diagnosis) -> float:
+    """Of the refitted simulator on held-out experiments, in noise floors."""
+    return max((error["refitted"] / error["noise_floor"] for error in diagnosis.gap.values()), default=math.inf)
 
 
 def _sources(diagnosis: Diagnosis, elements: Sequence[Mapping[str, Any]]) -> str:
