@@ -251,8 +251,8 @@ def test_a_refuted_effect_ranks_behind_none(found: Callable[..., Search]) -> Non
 def test_the_report_says_what_was_refuted(found: Callable[..., Search], shop: Callable[..., Any]) -> None:
     search = confirm.confirmed(found(FIRST), shop(10.0, 10.0))
     (said,) = notes._on_the_refuted(search)
-    assert said.startswith("Not established: joint:stribeck. The training experiments speak for it, but on held-out")
-    assert "less than 25 % of the excess error" in said
+    assert said.startswith("Not established: joint:stribeck. The training experiments speak for it, but adding it")
+    assert "removes less than 25 % of the held-out excess error" in said
     assert notes._on_the_refuted(found(FIRST)) == []
 
 
@@ -263,10 +263,11 @@ def test_the_report_says_what_removes_too_little_beside_others(
         confirm.confirmed(found(FIRST, SECOND, repeated=True), shop(6.0, 5.0, 4.9, gain=50.0))
     )
     assert said.startswith("Not established: actuation:delay.")
-    assert said.endswith("or keep more than 50 % of what the other effects leave, beside something unknown.")
+    assert "or removes less than 50 % of what the other effects leave" in said
+    assert said.endswith("and something unknown remains.")
     (said,) = notes._on_the_refuted(confirm.confirmed(found(FIRST, SECOND), shop(6.0, 5.0, 4.9, gain=50.0)))
     assert "less than 60 % of what the other effects leave" in said
-    assert said.endswith("50 % where something unknown is left).")
+    assert said.endswith("50 % where something unknown remains).")
 
 
 def test_what_an_effect_gains_counts_beside_those_before_alone(

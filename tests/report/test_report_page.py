@@ -329,6 +329,10 @@ def test_at_the_floor_no_output_is_said_to_carry_the_error(with_effect: Diagnosi
     assert isinstance(brief, Text)
     assert "no output errs by more than 1.1 times its noise floor." in brief.text
     assert "is largest" not in brief.text
+    weighed = {**with_effect.details, "weighed_by": {"errors": {"refitted": 3.0, "with_effect": 1.0}}}
+    elsewhere = location(replace(with_effect, gap=gap, details=weighed))[0]
+    assert isinstance(elsewhere, Text)
+    assert "is largest" in elsewhere.text  # the shares are those of another loop than the one shown
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,16 @@ from tendonlab.simulation.catalog import SystemInfo
 from tendonlab.simulation.command import fed_noise
 from tendonlab.simulation.records import Experiment
 from tendonlab.simulation.sense import EXACT, last_sense
-from tendonlab.simulation.signals import averaged, followed, hold, linear, scales_of, sloped, smooth, smoothed
+from tendonlab.simulation.signals import (
+    averaged,
+    hold,
+    linear,
+    scales_of,
+    sloped,
+    smooth,
+    smoothed,
+    smoothed_within_noise,
+)
 from tendonlab.simulation.start import Start, start_of
 
 if TYPE_CHECKING:
@@ -187,13 +196,14 @@ def is_held(experiment: Experiment, given: InputInfo) -> bool:
 def _between(
     experiment: Experiment, given: InputInfo, system: Simulator
 ) -> Callable[[np.ndarray, np.ndarray], _core.Signal]:
-    """How an input goes from sample to sample. A switch has no mean that is smooth."""
+    """How an input goes from sample to sample. A switch has no mean that is smooth; a system that goes from sample to
+    sample sees no kink between them."""
     if experiment.averaged and given.dimension != "ratio":
         return averaged
     if is_held(experiment, given):
         return hold
-    smooth = followed if system.info.sampled else smoothed
-    return {"smooth": smooth, "sloped": sloped}.get(given.between, linear)
+    near = smoothed_within_noise if system.info.sampled else smoothed
+    return {"smooth": near, "sloped": sloped}.get(given.between, linear)
 
 
 def _require_time(experiment: Experiment) -> None:

@@ -47,13 +47,13 @@ def smoothed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     return _from_pieces(spline_near(time[kept], values[kept]))
 
 
-def followed(time: np.ndarray, values: np.ndarray) -> _core.Signal:
+def smoothed_within_noise(time: np.ndarray, values: np.ndarray) -> _core.Signal:
     """At each sample the curve of `smoothed`; where the curve misses a sample by more than noise may, that sample as
-    logged, for a smooth curve takes a sudden stop for a gradual one."""
+    logged, for a smooth curve takes a sudden stop for a gradual one. Not for what is differentiated between samples."""
     from scipy.interpolate import CubicHermiteSpline
 
     near = spline_near(time, values)
-    curve, noise = near(time), max(noise_sd(values), (common_step([values]) or 0.0) / np.sqrt(12.0))
+    curve, noise = near(time), max(noise_sd(values), common_step([values]) / np.sqrt(12.0))
     missed = np.abs(values - curve) > BEYOND_NOISE * noise
     return _from_pieces(CubicHermiteSpline(time, np.where(missed, values, curve), near(time, 1)))
 

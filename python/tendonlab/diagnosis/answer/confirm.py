@@ -26,7 +26,7 @@ NEAR = 4.0  # mean square over the floor with it, beyond which more is missing a
 WHOLE = 0.85  # share of the held-out excess that all effects remove, below which something unknown is left
 BESIDE_UNKNOWN = 0.5  # share of it that the last of several must then remove: five imitations removed 0.05 to 0.36
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
-MOSTLY = 0.5  # share of the held-out excess beyond which any gain there is enough
+MOSTLY = 0.5  # share of the held-out excess beyond which any gain there is enough: chance of one motion removes little
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 MAINLY = 0.25  # share of its gain that beliefs must make up, to confirm an effect without held-out experiments
 
@@ -48,11 +48,12 @@ def _is_refuted(search: Search) -> bool:
     is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * gained
     if not case.test or (is_first and is_believed):
         return False
-    models = [heldout.models(case, m, case.test) for m in (search.tuned, *pair)]
+    models = [heldout.models(case, m, case.test) for m in (pair if is_first else (search.tuned, *pair))]
     try:
-        (tuned, before, after), judged, _ = heldout.replay_all(case, models, case.test)
+        replays, judged, _ = heldout.replay_all(case, models, case.test)
     except NumericalError:  # there is none that both models simulate
         return False
+    tuned, before, after = replays[0], replays[-2], replays[-1]
     floor = fitter.floor.reached_by(heldout.rms(after))
     share = heldout.explained(before, after, floor)
     if not is_first and (share or 0.0) < _least_share(tuned, after, floor, gained):
@@ -68,8 +69,8 @@ def _is_refuted(search: Search) -> bool:
 
 
 def _least_share(tuned: Replayed, after: Replayed, floor: Floor, gained: float) -> float:
-    """Share of the held-out excess that an effect beside others must remove, which gained so many nats on left-out
-    training experiments."""
+    """Share of what the others leave above the held-out floor that an effect beside them must remove, which gained so
+    many nats on left-out training experiments."""
     if heldout.level(after, floor) >= NEAR:
         return BESIDE_UNKNOWN if (heldout.explained(tuned, after, floor) or 0.0) < WHOLE else 0.0
     if floor.repeated:

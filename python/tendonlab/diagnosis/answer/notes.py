@@ -148,23 +148,21 @@ def _on_wide_intervals(search: Search) -> list[str]:
 def _on_the_refuted(search: Search) -> list[str]:
     """Effects that held-out experiments refute: first one that stood alone, then those beside others."""
     num_alone = 0 if search.selected else 1
+    alone, beside = search.refuted[:num_alone], search.refuted[num_alone:]
+    rest = "of what the other effects leave above the floor of held-out experiments"
     if search.fitter.floor.repeated:
-        against = "held-out ones are predicted worse with it, or hardly better"
-        kept = f"keep more than {100 - 100 * BESIDE_UNKNOWN:.0f} % of what the other effects leave"
-        beside = f"{against}, or {kept}, beside something unknown"
+        against = "predicts held-out experiments worse, or hardly better"
+        little = f"{against}, or removes less than {100 * BESIDE_UNKNOWN:.0f} % {rest}, and something unknown remains"
     else:
-        against = (
-            f"on held-out ones it removes less than {100 * CONFIRMED:.0f} % of the excess error, which may be chance"
+        against = f"removes less than {100 * CONFIRMED:.0f} % of the held-out excess error, which may be chance"
+        little = (
+            f"removes less than {100 * FURTHER:.0f} % {rest} ({100 * TELLING:.0f} % where left-out training "
+            f"experiments gain {HIDDEN:.0f} nats, {100 * BESIDE_UNKNOWN:.0f} % where something unknown remains)"
         )
-        beside = (
-            f"on held-out ones it removes less than {100 * FURTHER:.0f} % of what the other effects leave ("
-            f"{100 * TELLING:.0f} % where left-out training ones gain {HIDDEN:.0f} nats, "
-            f"{100 * BESIDE_UNKNOWN:.0f} % where something unknown is left)"
-        )
-    reasons = [(search.refuted[:num_alone], against), (search.refuted[num_alone:], beside)]
     return [
-        f"Not established: {', '.join(names)}. The training experiments speak for it, but {why}."
-        for names, why in reasons
+        f"Not established: {', '.join(names)}. The training experiments speak for {them}, but adding {them} {why}."
+        for names, why in ((alone, against), (beside, little))
+        for them in ("it" if len(names) == 1 else "each",)
         if names
     ]
 

@@ -10,7 +10,7 @@ from tendonlab.errors import NumericalError
 from tendonlab.fitting.fitted import Fitted
 from tendonlab.fitting.problem import Fitter
 
-FIRMLY = 300.0  # nats: near the floor of repeats further effects that are not there gained 204 at most
+FIRMLY = 300.0  # nats: near the floor of repeats effects that are not there gained 291 at most
 ABOVE = 0.3  # mean square above the floor of single outputs, in floors, of which something can be mended
 HALF = 0.5  # share of that which the effect must remove
 

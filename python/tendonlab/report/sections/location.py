@@ -62,7 +62,10 @@ def _summary(diagnosis: Diagnosis) -> str:
 
 
 def _largest_error(diagnosis: Diagnosis) -> float:
-    """Of the refitted simulator on held-out experiments, in noise floors."""
+    """Of the refitted simulator on held-out experiments, in noise floors; unknown where models were weighed otherwise
+    than errors are shown."""
+    if diagnosis.details.get("weighed_by"):
+        return math.inf
     return max((error["refitted"] / error["noise_floor"] for error in diagnosis.gap.values()), default=math.inf)
 
 
