@@ -71,11 +71,8 @@ def test_the_round_that_accepted_an_effect_speaks_for_it_else_the_first(listed: 
     assert (b.extra["evidence_gain"], b.extra["left_out_gain"], b.extra["beside"]) == (40.0, 20.0, ["p", "q"])
 
 
-def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails(*_: Any) -> None:
-        raise NumericalError("no")
-
-    monkeypatch.setattr(answer.heldout, "models", fails)
+def fitted_to(level: float) -> Any:
+    """A model whose effect `joint:a` has this level."""
     system = SimpleNamespace(
         info=SimpleNamespace(
             effect=lambda _: SimpleNamespace(parameters=("joint_level", "joint_shape")),
@@ -83,13 +80,27 @@ def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(mo
         ),
         unit=lambda _: "N*m",
     )
-    fitted: Any = SimpleNamespace(
-        added=("joint:a",), system=system, free=[SimpleNamespace(name="joint_level")], value=lambda _: (0.3, (0.2, 0.5))
-    )
-    search: Any = SimpleNamespace(fitter=SimpleNamespace(case=None), selected=(), refuted=())
+    value = (level, (level - 0.1, level + 0.2))
+    free = [SimpleNamespace(name="joint_level")]
+    return SimpleNamespace(added=("joint:a",), system=system, free=free, value=lambda _: value)
+
+
+def test_a_candidate_that_cannot_replay_what_was_held_out_has_parameters_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of an effect that was selected are of the last fit, beside all that was selected."""
+
+    def fails(*_: Any) -> None:
+        raise NumericalError("no")
+
+    monkeypatch.setattr(answer.heldout, "models", fails)
     judged: Any = SimpleNamespace(case=None, experiments=())
-    found = _numbers(search, Trial("joint:a", fitted, 9.0, 9.0, 0.0), judged, judged, 0)
-    assert found == {"parameters": {"level": {"value": 0.3, "ci95": [0.2, 0.5], "unit": "N*m"}}}
+    own = Trial("joint:a", fitted_to(0.3), 9.0, 9.0, 0.0)
+    for selected, level in (((), 0.3), (("joint:a", "joint:b"), 0.4)):
+        search: Any = SimpleNamespace(
+            fitter=SimpleNamespace(case=None), selected=selected, refuted=(), final=fitted_to(0.4)
+        )
+        found = _numbers(search, own, judged, judged, 0)
+        told = {"value": level, "ci95": [level - 0.1, level + 0.2], "unit": "N*m"}
+        assert found == {"parameters": {"level": told}}
 
 
 def test_an_effect_that_is_the_whole_answer_shrinks_the_gap_as_far(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from tendonlab.diagnosis.answer import notes
+from tendonlab.diagnosis.answer.by_noise import ByNoise
 from tendonlab.diagnosis.answer.verdict import Levels
 from tendonlab.diagnosis.discrepancy import Patterns
 from tendonlab.diagnosis.search.contest import Round
@@ -99,10 +100,10 @@ def test_an_input_has_the_unit_in_which_it_was_logged(twin_case: Any) -> None:
 def test_stops_that_noise_decides_are_told() -> None:
     levels = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=True)
     assert notes.stops(levels) == []
-    (told,) = notes.stops(replace(levels, by_noise=1.8))
+    (told,) = notes.stops(replace(levels, noise=ByNoise(more=1.8)))
     assert told.startswith("Noise alone may leave 1.8 times as much (mean square) of the held-out experiments")
     assert levels.far_room == pytest.approx(-0.2)
-    assert replace(levels, by_noise=1.8).far_room == pytest.approx(1.24)
+    assert replace(levels, noise=ByNoise(more=1.8)).far_room == pytest.approx(1.24)
 
 
 def test_an_error_that_is_no_noise_is_explained() -> None:

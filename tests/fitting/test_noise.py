@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 from tendonlab.data.dataset import Dataset, Experiment, NominalParameter, SignalSpec
 from tendonlab.errors import DatasetError
 from tendonlab.fitting.floor import LARGEST, _autoregression, _run_to_run, friction_groups
-from tendonlab.fitting.noise import Floor, blocks_of, integrated_time, remembered, sensor_noise
+from tendonlab.fitting.noise import RUN_TO_RUN_UNKNOWN, Floor, blocks_of, integrated_time, remembered, sensor_noise
 from tendonlab.simulation.prepare import Replay, prepare
 
 TIME = np.arange(0.0, 4.0, 0.002)
@@ -115,8 +115,16 @@ def test_friction_of_an_element_scales_together(twin_case: Any) -> None:
 
 
 def test_runs_that_do_not_repeat_at_all_are_not_put_down_to_friction() -> None:
-    assert _run_to_run([np.array([40.0]), np.array([-30.0])]) == LARGEST
-    assert 0.0 < _run_to_run([np.array([0.02]), np.array([-0.01])]) < 0.02
+    assert _run_to_run([np.array([40.0]), np.array([-30.0])], 1) == LARGEST
+    assert 0.0 < _run_to_run([np.array([0.02]), np.array([-0.01])], 1) < 0.02
+
+
+def test_one_pair_of_repeats_hardly_tells_how_far_friction_differs() -> None:
+    """One that differs by little may be chance; many tell."""
+    alike = [np.array([0.002]), np.array([-0.002])]
+    assert _run_to_run([], 0) == RUN_TO_RUN_UNKNOWN
+    assert 0.5 * RUN_TO_RUN_UNKNOWN < _run_to_run(alike, 1) < RUN_TO_RUN_UNKNOWN
+    assert _run_to_run(50 * alike, 50) == pytest.approx(np.sqrt((RUN_TO_RUN_UNKNOWN**2 + 50 * 0.002**2) / 51))
 
 
 def test_friction_that_scales_from_run_to_run_stays_within_its_bounds(twin_case: Any) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tendonlab.checking import smoothing
+from tendonlab.checking.moving import whole_around
 from tendonlab.checking.spikes import Marks, marks
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.catalog import SystemInfo
@@ -194,16 +195,13 @@ class _Record:
 
     def _travel(self, name: str, sd: float, step: float) -> np.ndarray:
         """The integral of a channel since the record began."""
-        from scipy.integrate import cumulative_trapezoid
-
-        return smoothing.smooth(step * cumulative_trapezoid(self.values[name], initial=0.0), sd)
+        values = self.values[name]
+        travel = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] + values[:-1]))])
+        return smoothing.smooth(travel, sd)
 
     def _clear(self, sd: float) -> np.ndarray:
         """Away from gaps and ends."""
-        from scipy.ndimage import minimum_filter1d
-
-        reach = int(2 * ENDS * sd) + 1
-        inside = minimum_filter1d(self.whole, reach, mode="constant", cval=0)
+        inside = whole_around(self.whole, int(2 * ENDS * sd) + 1)
         block = max(1, int(sd / smoothing.BLOCK))
         kept = inside[: len(inside) // block * block : block]
         return np.asarray(kept[:: smoothing.stride(sd) // block], dtype=bool)

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tendonlab.checking.moving import weighed_around
+
 MOST_SAMPLES = 8000  # of the grid over all experiments
 LEAST_WIDTH = 1.5  # samples: sd of the narrowest Gaussian
 NOISE_SHARE = 0.03  # of the rms acceleration that noise may reach
@@ -43,12 +45,10 @@ def width(positions: Sequence[np.ndarray], noise: Sequence[float], total: int) -
 def smooth(values: np.ndarray, sd: float, *, order: int = 0) -> np.ndarray:
     """A derivative of an even record, per sample^order, smoothed by a Gaussian of `sd` samples: about one value per
     sd."""
-    from scipy.ndimage import correlate1d
-
     block = max(1, int(sd / BLOCK))
     n = len(values) // block
     thinned = values[: n * block].reshape(n, block).mean(axis=1)
-    fine = correlate1d(thinned, _kernel(sd / block, order), mode="nearest") / float(block) ** order
+    fine = weighed_around(thinned, _kernel(sd / block, order)) / float(block) ** order
     return np.asarray(fine[:: stride(sd) // block])
 
 

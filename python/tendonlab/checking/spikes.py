@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.checking.kicks import moves_the_rig
+from tendonlab.checking.moving import largest_around, median_around, median_of_seven
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.reading import smallest_change
 
-WINDOW = 7  # samples of the running median: up to three outliers in a row are seen
+FEWEST_SAMPLES = 21  # of a record, in which up to three outliers in a row are seen
 AROUND = 51  # samples over which the noise of a record is looked at
 DEVIATIONS = 8.0  # robust standard deviations from the running median that make an outlier
 SPIKE = 25.0  # the same, of an input: what the controller did is no error
@@ -69,26 +70,24 @@ def outliers(values: np.ndarray) -> np.ndarray:
     found = _far_from_median(values, DEVIATIONS)
     for near, far in NEAR:
         kept = np.flatnonzero(np.isfinite(values) & ~found)
-        if len(kept) < 3 * WINDOW:
+        if len(kept) < FEWEST_SAMPLES:
             break
         filled = np.interp(np.arange(len(values)), kept, values[kept])
         off = np.concatenate([_off_the_path(filled, near, far), _off_at_the_ends(filled)])
-        found[np.intersect1d(off, kept)] = True
+        found[off[np.isfinite(values[off]) & ~found[off]]] = True
     return found if found.mean() <= MOST else np.zeros_like(found)
 
 
 def _off_the_path(y: np.ndarray, near: int, far: int) -> np.ndarray:
     """Which samples lie off the cubic through two neighbours on either side, the `near`-th and the `far`-th ones; a
     corner of that path, or a jump in it, is none."""
-    from scipy.ndimage import median_filter
-
     inner, outer = far**2 / (far**2 - near**2), -(near**2) / (far**2 - near**2)  # the cubic at the middle
     at = np.arange(far, len(y) - far)
     left, right = (y[at - near] - y[at - far]) / (far - near), (y[at + far] - y[at + near]) / (far - near)
     path = 0.5 * inner * (y[at - near] + y[at + near]) + 0.5 * outer * (y[at - far] + y[at + far])
     jump = np.abs(y[at + near] - y[at - near] - near * (left + right))
     away = np.abs(y[at] - path)
-    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="mirror"))
+    noise = 1.4826 * np.fmax(np.median(away), median_around(away, AROUND))
     allowed = DEVIATIONS * np.fmax(noise, smallest_change(y)) + CORNER * np.abs(right - left) + jump
     return np.asarray(at[away > allowed])
 
@@ -109,20 +108,18 @@ def _off_at_the_ends(y: np.ndarray) -> np.ndarray:
 
 def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
     """Which samples are far from the running median, more than the median itself bends."""
-    from scipy.ndimage import maximum_filter1d, median_filter
-
     kept = np.flatnonzero(np.isfinite(values))
     found = np.zeros(len(values), dtype=bool)
-    if len(kept) < 3 * WINDOW:
+    if len(kept) < FEWEST_SAMPLES:
         return found
     y = values[kept]
-    middle = median_filter(y, WINDOW, mode="nearest")
+    middle = median_of_seven(y)
     away = np.abs(y - middle)
-    noise = 1.4826 * np.fmax(np.median(away), median_filter(away, AROUND, mode="mirror"))
+    noise = 1.4826 * np.fmax(np.median(away), median_around(away, AROUND))
     # A sample of a motion faster than its noise is the median itself, and says nothing of the noise.
     noise = np.fmax(noise, 1.4826 * float(np.median(np.abs(np.diff(y, 4)))) / FOURTH)
     bends = np.abs(np.diff(middle, 2, prepend=middle[0], append=middle[-1]))
-    allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * maximum_filter1d(bends, WINDOW)
+    allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * largest_around(bends, 7)
     found[kept] = away > allowed
     return found if found.mean() <= MOST else np.zeros_like(found)
 

@@ -115,7 +115,11 @@ class System:
         """One flag per effect of the core. An effect whose amplitude is exactly 0 is off, unless `keep_zero`."""
         if keep_zero:
             return [e.structural or e.name in self.effects for e in self.info.effects]
-        return [bool(acts) for acts in self.active_at(np.array(self._values))]
+        return list(self._active)
+
+    @cached_property
+    def _active(self) -> tuple[bool, ...]:
+        return tuple(self.active_at(np.array(self._values)).tolist())
 
     def active_at(self, values: np.ndarray) -> np.ndarray:
         """One flag per effect, shape (..., effects), for values as `values` gives them, shape (..., parameters)."""

@@ -45,7 +45,13 @@ def _nearest(case: Case, fitted: Fitted, floor: Floor, i: int, row: Row) -> Row:
     _, initial, residual, _ = row
     if not _is_off(residual, floor):
         return row
-    return _Search.of(case, fitted, floor, i).best(initial) or row
+    nearest = _Search.of(case, fitted, floor, i).best(initial)
+    return row if nearest is None or _error(nearest, floor) > _error(row, floor) else nearest
+
+
+def _error(row: Row, floor: Floor) -> float:
+    """Mean square over the floor, which rows that count as independent may raise where they lower their own."""
+    return float(np.nanmean(row_mean_squares(row[2]) / np.square(floor.rms)))
 
 
 def _is_off(residual: np.ndarray, floor: Floor) -> bool:
@@ -78,15 +84,26 @@ class _Search:
 
     def best(self, initial: tuple[float, ...]) -> Row | None:
         """The most probable model, sought from the fitted one and this initial state; None where nothing is more
-        probable than these, or where it is itself improbable."""
+        probable than these, or where it is itself improbable. Parameters that bend to a detail may be improbable where
+        the unknowns of the experiment alone explain most."""
         num = int(self.moving.sum())
         start = ([*initial, *[0.0] * len(self.case.scatter)] - self.case.own_mean(self.i)) / self.case.own_sd(self.i)
-        at, best = np.concatenate([np.zeros(num), start]), None
+        found = (self._sought(np.concatenate([np.zeros(num), start]), first) for first in (0, num))
+        probable = next((f for f in found if f is not None), None)
+        if probable is None:
+            return None
+        at, best = probable
+        return self._system(at), tuple(self._own(at)[: len(initial)].tolist()), best - self._measured, best
+
+    def _sought(self, at: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray] | None:
+        """The most probable coordinates, where only those from the `first` on move, and the outputs there; None as
+        `best` has it."""
+        best = None
         try:
             for _ in range(ROUNDS):
                 run = self._run(at)
                 cost = self._cost(at, run.residual, run.output)
-                step = self._step(at, run)
+                step = self._step(at, run, first)
                 tries = ((at + part * step, self._seen(at + part * step)) for part in PARTS)
                 better = next((t for t in tries if self._cost(t[0], self._white(t[1]), run.output) < cost), None)
                 if better is None:
@@ -94,9 +111,7 @@ class _Search:
                 at, best = better
         except NumericalError:
             pass
-        if best is None or at @ self.prior @ at > chdtri(len(at), RARE):
-            return None
-        return self._system(at), tuple(self._own(at)[: len(initial)].tolist()), best - self._measured, best
+        return None if best is None or at @ self.prior @ at > chdtri(len(at) - first, RARE) else (at, best)
 
     @property
     def _measured(self) -> np.ndarray:
@@ -126,10 +141,12 @@ class _Search:
     def _cost(self, at: np.ndarray, residual: np.ndarray, output: np.ndarray) -> float:
         return float(self.fitted.shares[output] @ np.square(residual) + at @ self.prior @ at)
 
-    def _step(self, at: np.ndarray, run: Run) -> np.ndarray:
+    def _step(self, at: np.ndarray, run: Run, first: int) -> np.ndarray:
         weight = np.sqrt(self.fitted.shares[run.output])
         slopes = weight[:, None] * np.concatenate([run.jacobian[:, self.moving], run.by_own], axis=1)
         if not np.isfinite(slopes).all():
             raise NumericalError("derivatives are not finite")
         push = slopes.T @ (weight * run.residual) + self.prior @ at
-        return np.asarray(-solved(slopes.T @ slopes + self.prior, push))
+        step = np.zeros(len(at))
+        step[first:] = -solved((slopes.T @ slopes + self.prior)[first:, first:], push[first:])
+        return step

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -11,7 +10,7 @@ import pandas as pd
 from tendonlab.diagnosis import confusions
 from tendonlab.diagnosis.answer import heldout, notes, where
 from tendonlab.diagnosis.answer.allowed import allowed
-from tendonlab.diagnosis.answer.by_noise import more_by_noise
+from tendonlab.diagnosis.answer.by_noise import NO_NOISE, left_by_noise
 from tendonlab.diagnosis.answer.calibration import shipped
 from tendonlab.diagnosis.answer.caveats import caveats, drowned
 from tendonlab.diagnosis.answer.explore import explore
@@ -33,7 +32,7 @@ from tendonlab.diagnosis.search.trial import restores_belief
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
-from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.noise import NEAR_FLOOR, Floor
 from tendonlab.report.diagnosis import Diagnosis
 from tendonlab.simulation.prepare import Replay
 
@@ -135,13 +134,17 @@ def _levels(
     seed: int = 0,
 ) -> Levels:
     case, final, doubtful = search.fitter.case, search.final, not floor.repeated
+    left, noise = heldout.level(near["with_effect"], floor), NO_NOISE
+    if floor.repeated and left > NEAR_FLOOR:
+        noise = left_by_noise(case, final.system, floor, judged, seed=seed)
+    explained = heldout.explained(stages["refitted"], near["with_effect"], floor, least=noise.left)
     levels = Levels(
         nominal=nominal.mean_square if floor.repeated else heldout.level(stages["nominal"], floor),
         tuned=search.tuned.mean_square,
         refitted=heldout.level(near["refitted"], floor),
         predicted=heldout.level(stages["refitted"], floor),
-        explained=heldout.explained(stages["refitted"], near["with_effect"], floor) if search.selected else None,
-        left=heldout.level(near["with_effect"], floor),
+        explained=explained if search.selected else None,
+        left=left,
         repeated=floor.repeated,
         whitened=final.mean_square,
         trained=final.over_scatter(len(case.scatter)) if doubtful else 1.0,
@@ -151,9 +154,8 @@ def _levels(
         drifted=drift.chance if drift and drift.tells else 1.0,
         drowned=len(drowned(case, floor, judged)) == len(case.measured),
         relieved=bool(search.selected) and restores_belief(case, search.tuned, final),
+        noise=noise,
     )
-    if levels.repeated and levels.is_far:
-        levels = replace(levels, by_noise=more_by_noise(case, final.system, floor, judged, seed=seed))
     return outlier.left_out(levels, nominal) if outlier else levels
 
 

@@ -16,6 +16,7 @@ from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import Trial
 from tendonlab.errors import NumericalError
 from tendonlab.fitting.case import Case
+from tendonlab.fitting.fitted import Fitted
 from tendonlab.report.diagnosis import EffectFinding
 
 
@@ -57,7 +58,8 @@ def _telling_trials(search: Search) -> dict[str, Trial]:
 
 def _numbers(search: Search, trial: Trial, weighed: Judged, shown: Judged, seed: int) -> dict[str, Any]:
     fitter = search.fitter
-    about: dict[str, Any] = {"parameters": _parameters(fitter.case, trial)}
+    told = search.final if trial.effect in search.selected else trial.fitted  # the last fit knows all that is there
+    about: dict[str, Any] = {"parameters": _parameters(fitter.case, told, trial.effect)}
     try:
         replayed = _replayed(weighed, trial, search)
     except NumericalError:  # a candidate that the training experiments already speak against
@@ -86,12 +88,11 @@ def _kept(trial: Trial, search: Search) -> list[str]:
     return [name for name in trial.fitted.added if name == trial.effect or name not in search.refuted]
 
 
-def _parameters(case: Case, trial: Trial) -> dict[str, dict[str, Any]]:
-    fitted = trial.fitted
+def _parameters(case: Case, fitted: Fitted, effect: str) -> dict[str, dict[str, Any]]:
     info = fitted.system.info
     free = {f.name for f in fitted.free}
     rows = {}
-    for name in info.effect(trial.effect).parameters:
+    for name in info.effect(effect).parameters:
         if name in free:
             value, interval = value_and_interval(case, fitted, name)
             rows[info.parameter(name).own] = {

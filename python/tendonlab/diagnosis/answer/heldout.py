@@ -95,9 +95,10 @@ def level(of: Replayed, floor: Floor) -> float:
     return float(np.mean(np.square(error[there] / floor.rms[there])))
 
 
-def explained(before: Replayed, after: Replayed, floor: Floor) -> float | None:
-    """Share of the mean square above the floor that a change of model removes; None where nothing lies above it."""
-    first, last = level(before, floor) - 1.0, level(after, floor) - 1.0
+def explained(before: Replayed, after: Replayed, floor: Floor, *, least: float = 1.0) -> float | None:
+    """Share of the mean square above the floor that a change of model removes; None where nothing lies above it.
+    `least`: that square, over the floor, which no model need remove."""
+    first, last = level(before, floor) - least, level(after, floor) - least
     return None if first <= 0 else float(np.clip(1.0 - max(0.0, last) / first, 0.0, 1.0))
 
 

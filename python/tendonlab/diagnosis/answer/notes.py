@@ -277,10 +277,10 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
 
 def stops(levels: Levels) -> list[str]:
     """A warning where noise decides what held-out experiments leave."""
-    if levels.by_noise < TOLD:
+    if levels.noise.more < TOLD:
         return []
     return [
-        f"Noise alone may leave {levels.by_noise:.2g} times as much (mean square) of the held-out experiments as of "
+        f"Noise alone may leave {levels.noise.more:.2g} times as much (mean square) of the held-out experiments as of "
         "the repeated ones: where friction holds a part, noise decides where that part stops. The verdict allows for "
         "such noise."
     ]

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tendonlab.diagnosis.answer.by_noise import NO_NOISE, ByNoise
 from tendonlab.diagnosis.discrepancy import (
     BEYOND_SCATTER,
     BEYOND_SENSORS,
@@ -59,9 +60,9 @@ class Levels:
     `trained`: the mean square of that in units of what run-to-run friction may leave; and, where nothing was selected,
     `scattered`: by how much friction differs from run to run. `strained`: by how many stated standard deviations the
     fit pulled the parameter that it pulled farthest. `drifted`: the chance of a trend of friction over the session, 1
-    where there is none that matters. `by_noise`: by how many times more noise alone leaves of held-out experiments than
-    of repeated ones. `drowned`: whether the floor of every output exceeds its motion. `relieved`: whether the selected
-    effects free the parameters from what nobody believes of them."""
+    where there is none that matters. `noise`: what noise alone leaves of held-out experiments. `drowned`: whether the
+    floor of every output exceeds its motion. `relieved`: whether the selected effects free the parameters from what
+    nobody believes of them."""
 
     nominal: float
     tuned: float
@@ -76,7 +77,7 @@ class Levels:
     strained: float = 0.0
     drifted: float = 1.0
     predicted: float | None = None
-    by_noise: float = 1.0
+    noise: ByNoise = NO_NOISE
     drowned: bool = False
     relieved: bool = False
 
@@ -84,7 +85,7 @@ class Levels:
     def far_room(self) -> float:
         """By how much held-out experiments keep clear of what is no noise: a stop, say, that no training run
         reaches."""
-        most = FAR_REPEATED * self.by_noise * max(1.0, self.tuned) if self.repeated else FAR
+        most = FAR_REPEATED * self.noise.more * max(1.0, self.tuned) if self.repeated else FAR
         return most - self.refitted
 
     @property
@@ -139,7 +140,7 @@ def decide(rounds: Sequence[Round], selected: Sequence[str], levels: Levels) -> 
     holds = levels.repeated or levels.trained < FAR_TRAINED  # a held-out motion may miss what training ones show
     at_floor = holds and not (is_missing or selected) and (levels.nominal < NO_GAP or gained < 0 < room)
     # By how much the selected effects are the whole answer: held-out experiments at the floor leave nothing unknown.
-    whole = max(_whole(levels), NO_GAP - levels.left)
+    whole = max(_whole(levels), NO_GAP * levels.noise.left - levels.left)
     if levels.relieved:  # what may be noise beside parameters that nobody believes may be so beside effects
         whole = max(whole, room)
     spare = min(noise, whole, _chance_room(levels), _belief_room(levels, STRAINED_BESIDE))
@@ -176,7 +177,8 @@ def _whole(levels: Levels) -> float:
     """By how much the selected effects remove enough of the held-out excess to be the whole answer. Far above the floor
     more is asked for, and that share is well known; from `FAR` to twice that, one passes into the other."""
     near = EXPLAINED if levels.repeated and levels.whitened > AT_FLOOR else EXPLAINED_OF_ASSUMED
-    far = float(np.clip(np.log2(max(levels.left, FAR) / FAR), 0.0, 1.0))
+    left = levels.left / levels.noise.left
+    far = float(np.clip(np.log2(max(left, FAR) / FAR), 0.0, 1.0))
     enough = near + far * (EXPLAINED_FAR - near)
     return (1.0 + far * (WELL_KNOWN - 1.0)) * ((levels.explained or 0.0) - enough)
 
