@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 APART = 1.5  # ratio of held-out errors in the closed loop and in an injection, beyond which a reader must know both
 UNSTEADY = 0.03  # relative sd of friction from run to run beyond which repeatability is the limit
-TOLD = 1.2  # times as much by noise alone, from which a reader is told
+TOLD = 1.2  # noise floors that noise alone leaves, from which a reader is told
 
 
 def warnings(case: Case, floor: Floor, search: Search) -> list[str]:
@@ -277,12 +277,13 @@ def no_noise(levels: Levels, *, selected: bool) -> list[str]:
 
 def stops(levels: Levels) -> list[str]:
     """A warning where noise decides what held-out experiments leave."""
-    if levels.noise.more < TOLD:
+    floors = levels.noise.left**0.5
+    if floors < TOLD:
         return []
     return [
-        f"Noise alone may leave {levels.noise.more:.2g} times as much (mean square) of the held-out experiments as of "
-        "the repeated ones: where friction holds a part, noise decides where that part stops. The verdict allows for "
-        "such noise."
+        f"Noise of the logs alone leads a perfect simulator {floors:.2g} noise floors (rms) from the held-out "
+        "experiments: where friction holds a part, noise decides where that part stops. No model can be expected to "
+        "come nearer, and the verdict allows for such noise."
     ]
 
 
