@@ -35,6 +35,7 @@ OFF = (
     "tells ratios of torques, inertias and stiffness alone, so the best known of these is taken at its word: all "
     "others are as wrong as that one."
 )
+FEW = 2  # systems that take less time one by one than side by side
 START = 0.2  # s of the first measured part of an experiment, from which its initial state is estimated
 
 
@@ -172,8 +173,8 @@ class Case:
     ) -> tuple[np.ndarray, list[str]]:
         """Experiment i simulated by systems of one kind, several at a time: outputs (systems, outputs, samples), 0
         where none was measured; and for each system "" or why its simulation failed."""
-        if not systems:
-            return np.zeros((0, *self.prepared[i].measured.shape)), []
+        if len(systems) <= FEW:
+            return self._run_each(i, systems, own)
         start, measured = self.started(i, own), list(self.measured)
         rows = [self.at(i, system, own) for system in systems]
         values, active = np.array([v for v, _ in rows]), np.array([a for _, a in rows], dtype=np.uint8)
@@ -183,6 +184,16 @@ class Case:
         said = _core.simulate_many(kind, values, active, start, position, velocity, settings, measured, seen)
         outputs = np.zeros((len(systems), *self.prepared[i].measured.shape))
         outputs[:, measured] = seen
+        return outputs, said
+
+    def _run_each(self, i: int, systems: Sequence[System], own: Sequence[float]) -> tuple[np.ndarray, list[str]]:
+        """The same, one at a time."""
+        outputs, said = np.zeros((len(systems), *self.prepared[i].measured.shape)), [""] * len(systems)
+        for k, system in enumerate(systems):
+            try:
+                outputs[k, self.measured] = self.run(i, system, own)["outputs"][self.measured]
+            except NumericalError as reason:
+                outputs[k, self.measured], said[k] = np.nan, str(reason)
         return outputs, said
 
     def task(self, i: int, whitening: _core.Whitening, system: System, *, tightness: float = 1.0) -> _core.Task:

@@ -6,9 +6,12 @@ held-out experiments are predicted worse with that effect, the imitation fails. 
 by chance; an effect that gains on them alone explains that chance.
 
 Effects of rigs have other forms than the library's. What the form of the first effect leaves, a further one may remove
-in part, on all experiments alike. So may a further one that imitates a cause which the library lacks."""
+in part, on all experiments alike. So may a further one that imitates a cause which the library lacks. And what changes
+no prediction by as much as a reader sees is no cause of a gap."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
@@ -17,7 +20,7 @@ from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import HIDDEN, Trial, relief, restores_belief
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
-from tendonlab.fitting.noise import Floor
+from tendonlab.fitting.noise import NEAR_FLOOR, Floor
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
 FURTHER = 0.6  # the same of an effect beside others: one that only mends the form of theirs removes 0 to 0.56
@@ -27,6 +30,7 @@ WHOLE = 0.85  # share of the held-out excess that all effects remove, below whic
 BESIDE_UNKNOWN = 0.5  # share of it that the last of several must then remove: five imitations removed 0.05 to 0.36
 CARRIED = 0.1  # share of its gain on left-out training experiments that an effect must bring on held-out ones
 MOSTLY = 0.5  # share of the held-out excess beyond which any gain there is enough: chance of one motion removes little
+VISIBLY = 1.05  # ratio of held-out errors that a reader sees: right effects improved some output 1.24 times and more
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 MAINLY = 0.25  # share of its gain that beliefs must make up, to confirm an effect without held-out experiments
 
@@ -41,7 +45,8 @@ def confirmed(search: Search, shop: Workshop) -> Search:
 def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are predicted worse with the last effect, or hardly better though the training
     experiments predict much; without repeats where it removes little of what the model without it leaves, and may do
-    even that by chance, or where an effect beside others leaves much of what they leave."""
+    even that by chance, or where an effect beside others leaves much of what they leave. At the
+    floor, whether it changes nothing."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     gained, is_first = _gained(search), len(search.selected) == 1
     # What beliefs tell needs no experiment.
@@ -54,6 +59,8 @@ def _is_refuted(search: Search) -> bool:
     except NumericalError:  # there is none that both models simulate
         return False
     tuned, before, after = replays[0], replays[-2], replays[-1]
+    if not is_believed and pair[0].mean_square < NEAR_FLOOR and _changes_nothing(before, after, fitter.floor):
+        return True
     floor = fitter.floor.reached_by(heldout.rms(after))
     share = heldout.explained(before, after, floor)
     if not is_first and (share or 0.0) < _least_share(tuned, after, floor, gained):
@@ -66,6 +73,12 @@ def _is_refuted(search: Search) -> bool:
         needed = 0.0 if (share or 0.0) > MOSTLY else max(0.0, min(SURE * gain["se"], predicted))
         return gain["mean"] < needed
     return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
+
+
+def _changes_nothing(before: Replayed, after: Replayed, floor: Floor) -> bool:
+    """Whether no output is predicted visibly better, at the floor: many samples may tell a fifth of a sampling step."""
+    better = heldout.rms(before) / heldout.rms(after)
+    return heldout.level(before, floor) < NEAR_FLOOR and float(np.nanmax(better)) < VISIBLY
 
 
 def _least_share(tuned: Replayed, after: Replayed, floor: Floor, gained: float) -> float:
