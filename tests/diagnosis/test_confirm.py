@@ -76,14 +76,17 @@ def accepted_last(search: Search) -> Trial:
 
 @pytest.fixture
 def shop(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
-    """A workshop, where models of none, one and two effects replay with these errors."""
+    """A workshop, where fits of none, one and two effects replay with these errors, and the untouched simulator too."""
 
-    def made(*errors: float, gain: float = 1.0) -> Any:
+    def made(*errors: float, gain: float = 1.0, untouched: float = 20.0) -> Any:
+        def replay(case: Any, models: list[Any], judged: Any) -> Replayed:
+            return replayed(*[untouched if models[0] is case.system else errors[models[0]]] * 3)
+
         monkeypatch.setattr(heldout, "predictive_gain", lambda *_: {"mean": gain, "se": 1.0})
         monkeypatch.setattr(confirm, "renewed", lambda fitter, model, pool: (fitter, model))
         monkeypatch.setattr(confirm, "_gained", lambda search: accepted_last(search).left_out_gain)
         monkeypatch.setattr(heldout, "models", lambda case, model, judged: [len(model.added)] * len(judged))
-        monkeypatch.setattr(heldout, "replay", lambda case, models, judged: replayed(*[errors[models[0]]] * 3))
+        monkeypatch.setattr(heldout, "replay", replay)
         return SimpleNamespace(pool=None)
 
     return made
@@ -111,6 +114,18 @@ def test_where_nothing_is_left_to_remove_a_sure_gain_alone_confirms(
     found: Callable[..., Search], shop: Callable[..., Any], gain: float, kept: bool
 ) -> None:
     assert bool(confirm.confirmed(found(FIRST), shop(0.9, 0.9, gain=gain)).selected) is kept
+
+
+@pytest.mark.parametrize("repeated", [False, True])
+@pytest.mark.parametrize(("untouched", "kept"), [(0.99, False), (1.04, False), (1.06, True), (1.08, True)])
+def test_an_effect_beside_which_the_untouched_simulator_is_as_good_is_no_cause(
+    found: Callable[..., Search], shop: Callable[..., Any], repeated: bool, untouched: float, kept: bool
+) -> None:
+    """At the floor; tuning had made it worse."""
+    search = found(FIRST, repeated=repeated)
+    own = replace(search.fitter.floor, known=(1.0,) * len(search.fitter.floor.sd))
+    search = replace(search, fitter=replace(search.fitter, floor=own))
+    assert bool(confirm.confirmed(search, shop(3.0, 1.0, gain=50.0, untouched=untouched)).selected) is kept
 
 
 @pytest.mark.parametrize("repeated", [False, True])

@@ -11,15 +11,19 @@ no prediction by as much as a reader sees is no cause of a gap."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
+from tendonlab.diagnosis.answer.verdict import NO_GAP
 from tendonlab.diagnosis.floor import renewed
 from tendonlab.diagnosis.search.select import Search
 from tendonlab.diagnosis.search.trial import HIDDEN, Trial, relief, restores_belief
 from tendonlab.diagnosis.search.workshop import Workshop
 from tendonlab.errors import NumericalError
+from tendonlab.fitting.case import Case
 from tendonlab.fitting.noise import NEAR_FLOOR, Floor
 
 CONFIRMED = 0.25  # share of the held-out excess that confirms the last effect
@@ -46,7 +50,7 @@ def _is_refuted(search: Search) -> bool:
     """Whether held-out experiments are predicted worse with the last effect, or hardly better though the training
     experiments predict much; without repeats where it removes little of what the model without it leaves, and may do
     even that by chance, or where an effect beside others leaves much of what they leave. At the
-    floor, whether it changes nothing."""
+    floor, whether it changes nothing, or the untouched simulator is as good."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     gained, is_first = _gained(search), len(search.selected) == 1
     # What beliefs tell needs no experiment.
@@ -62,6 +66,8 @@ def _is_refuted(search: Search) -> bool:
     if not is_believed and pair[0].mean_square < NEAR_FLOOR and _changes_nothing(before, after, fitter.floor):
         return True
     floor = fitter.floor.reached_by(heldout.rms(after))
+    if _is_as_good_untouched(case, after, floor, judged):
+        return True
     share = heldout.explained(before, after, floor)
     if not is_first and (share or 0.0) < _least_share(tuned, after, floor, gained):
         return True
@@ -79,6 +85,15 @@ def _changes_nothing(before: Replayed, after: Replayed, floor: Floor) -> bool:
     """Whether no output is predicted visibly better, at the floor: many samples may tell a fifth of a sampling step."""
     better = heldout.rms(before) / heldout.rms(after)
     return heldout.level(before, floor) < NEAR_FLOOR and float(np.nanmax(better)) < VISIBLY
+
+
+def _is_as_good_untouched(case: Case, after: Replayed, floor: Floor, judged: Sequence[int]) -> bool:
+    """Whether the untouched simulator is at the floor, and no visibly farther from it."""
+    try:
+        untouched = heldout.level(heldout.replay(case, [case.system] * len(judged), judged), floor)
+    except NumericalError:
+        return False
+    return untouched < min(NO_GAP, VISIBLY**2 * heldout.level(after, floor))
 
 
 def _least_share(tuned: Replayed, after: Replayed, floor: Floor, gained: float) -> float:
