@@ -61,6 +61,17 @@ def test_a_toe_makes_the_cables_as_soft_as_the_twins() -> None:
     assert (soft - linear).to_numpy() == pytest.approx(wanted, abs=0.01 * np.abs(wanted).max())
 
 
+def test_nuts_that_rest_keep_the_sense_of_the_bushings() -> None:
+    """What is left of the joint's creep is rounding, whose sign turned the force of a bushing by 11 N."""
+    time = np.linspace(0.0, 8.0, 4001)
+    velocity = np.where(time % 4.0 < 2.0, 4e-3 * np.sin(np.pi * time), 0.0)
+    frame = pd.DataFrame({"actuator_velocity": velocity}, index=pd.Index(time, name="t"))
+    for tolerance in (1e-5, 1e-6, 1e-8):
+        force = s2.system(RIG).simulate(frame, tolerance=tolerance)["cable_force_1"].to_numpy()
+        for rest in ((time > 2.2) & (time < 4.0), time > 6.2):
+            assert np.abs(np.diff(force[rest])).max() < 0.1
+
+
 def test_half_the_twins_step_halves_the_difference() -> None:
     """So the difference is the twin's, not ours."""
     errors = []
