@@ -8,6 +8,7 @@ import pytest
 
 from tendonlab.diagnosis.answer import answer
 from tendonlab.diagnosis.answer.answer import _invisible, _levels, _next
+from tendonlab.diagnosis.answer.by_noise import NO_NOISE, ByNoise
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.discrepancy import Patterns
 from tendonlab.diagnosis.drift import Drift
@@ -36,15 +37,19 @@ def test_levels_are_whitened_where_runs_repeat_and_plain_elsewhere(
     monkeypatch.setattr(answer, "scattered", lambda case, model: 3.0)
     monkeypatch.setattr(answer, "strain", lambda case, model: 6.0)
     monkeypatch.setattr(answer, "restores_belief", lambda case, base, model: model.mean_square < base.mean_square)
-    tuned = SimpleNamespace(mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
+    tuned = SimpleNamespace(system=None, mean_square=7.0, over_scatter=lambda groups: 10.0 * groups)
     run = SimpleNamespace(measured=np.array([np.tile([-0.4, 0.4], 10), np.full(20, np.nan), np.tile([-4.0, 4.0], 10)]))
     fitter = SimpleNamespace(case=SimpleNamespace(scatter=((), ()), train=range(5), measured=[0, 2], prepared=[run]))
-    final = SimpleNamespace(mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
+    final = SimpleNamespace(system=None, mean_square=1.04, over_scatter=lambda groups: 5.0 * groups)
     search: Any = SimpleNamespace(tuned=tuned, final=final, selected=("x",), fitter=fitter)
+    monkeypatch.setattr(answer, "left_by_noise", lambda *_, seed: ByNoise(1.5, 2.0))
     found = _levels(search, nominal, stages, stages, floor, None, judged=(0,))
+    assert found.noise == (ByNoise(1.5, 2.0) if repeated else NO_NOISE)
     assert found.nominal == pytest.approx(77.0 if repeated else 25.0)
     assert (found.tuned, found.refitted, found.repeated) == (7.0, pytest.approx(9.0), repeated)
-    assert found.explained == pytest.approx(5.0 / 8.0)
+    assert found.explained == pytest.approx(
+        5.0 / 7.5 if repeated else 5.0 / 8.0
+    )  # no model need remove what noise leaves
     assert found.whitened == 1.04
     assert not found.drowned  # one output moves by less than its floor, the other by more
     assert found.patterns == (0.25, 0.1, 6.0)

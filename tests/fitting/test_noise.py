@@ -115,16 +115,20 @@ def test_friction_of_an_element_scales_together(twin_case: Any) -> None:
 
 
 def test_runs_that_do_not_repeat_at_all_are_not_put_down_to_friction() -> None:
-    assert _run_to_run([np.array([40.0]), np.array([-30.0])], 1) == LARGEST
-    assert 0.0 < _run_to_run([np.array([0.02]), np.array([-0.01])], 1) < 0.02
+    assert _run_to_run([np.array([40.0]), np.array([-30.0])]) == LARGEST
+    assert 0.0 < _run_to_run([np.array([0.02]), np.array([-0.01])]) < 0.02
 
 
-def test_one_pair_of_repeats_hardly_tells_how_far_friction_differs() -> None:
+def test_one_pair_of_repeats_hardly_tells_how_far_friction_of_another_run_differs() -> None:
     """One that differs by little may be chance; many tell."""
-    alike = [np.array([0.002]), np.array([-0.002])]
-    assert _run_to_run([], 0) == RUN_TO_RUN_UNKNOWN
-    assert 0.5 * RUN_TO_RUN_UNKNOWN < _run_to_run(alike, 1) < RUN_TO_RUN_UNKNOWN
-    assert _run_to_run(50 * alike, 50) == pytest.approx(np.sqrt((RUN_TO_RUN_UNKNOWN**2 + 50 * 0.002**2) / 51))
+
+    def unseen(differences: int) -> float:
+        told = Floor(np.array([1.0]), [[]], [1.0], 0.002, repeated=differences > 0, differences=differences)
+        return told.tau_unseen
+
+    assert unseen(0) == 0.002
+    assert unseen(1) == pytest.approx(np.sqrt((0.002**2 + RUN_TO_RUN_UNKNOWN**2) / 2.0))
+    assert 0.002 < unseen(100) < 0.003
 
 
 def test_friction_that_scales_from_run_to_run_stays_within_its_bounds(twin_case: Any) -> None:

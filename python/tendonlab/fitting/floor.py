@@ -25,7 +25,7 @@ LEAST = 0.3  # of the sensors' noise: less than this repeats do not show, whatev
 DIFFERENT = 0.5  # of the rms command, by which those of repeats may differ; such of stable loops differ by 0.35 at most
 ALIKE = 0.5  # share of what repeats differ by from fitted starts (mean square), below which believed ones count
 LARGEST = 0.5  # plausible factor by which friction differs from run to run
-BELIEVED = 1.0  # differences between repeats that what is believed of friction from run to run counts for
+RUN_TO_RUN_WEIGHT = 4.0  # repeats that the default sd of friction from run to run counts for
 
 
 @dataclass(frozen=True)
@@ -136,8 +136,8 @@ def _from_repeats(case: Case, seen: Sequence[Sensitivities], repeats: Sequence[S
         least, differs = LEAST * float(case.noise[c]), shown > NOTHING * rounding
         sd[c] = max(innovation * max(1.0, rounding / shown) if differs else rounding, least)
         rms[c] = max(_rms([d[c] for d in differences]), rounding, least)
-    tau = _run_to_run([coefficients for _, coefficients in pairs], len(members) - len(repeats))
-    return Floor(rms, ar, sd, tau, repeated=True)
+    tau = _run_to_run([coefficients for _, coefficients in pairs])
+    return Floor(rms, ar, sd, tau, repeated=True, differences=len(members) - len(repeats))
 
 
 def with_steady_starts(
@@ -253,14 +253,12 @@ def _clean(case: Case, difference: np.ndarray, s: Sensitivities) -> tuple[np.nda
     return cleaned, found[: len(s.friction)]
 
 
-def _run_to_run(coefficients: Sequence[np.ndarray], differences: int) -> float:
-    """Relative sd of friction from run to run, from the `coefficients` of each repeat, of which so many `differences`
-    are independent: one pair that differs little may be chance, so that what is plausible counts as well. At most
-    what is plausible at all: runs that do not repeat, as in a limit cycle, differ by more than friction."""
-    squares = np.square(np.concatenate(coefficients)) if coefficients else np.zeros(0)
-    told = len(squares) * differences / max(len(coefficients), 1)
-    total = BELIEVED * RUN_TO_RUN_UNKNOWN**2 + (told * float(np.mean(squares)) if told else 0.0)
-    return min(float(np.sqrt(total / (BELIEVED + told))), LARGEST)
+def _run_to_run(coefficients: list[np.ndarray]) -> float:
+    """Relative sd of friction from run to run, shrunk to the default; at most what is plausible: runs that do not
+    repeat at all, as in a limit cycle, differ by more than friction."""
+    squares = np.concatenate([np.square(c) for c in coefficients]) if coefficients else np.zeros(0)
+    total = RUN_TO_RUN_WEIGHT * RUN_TO_RUN**2 + float(np.sum(squares))
+    return min(float(np.sqrt(total / (RUN_TO_RUN_WEIGHT + len(squares)))), LARGEST)
 
 
 def _autoregression(records: list[np.ndarray]) -> tuple[list[float], float]:

@@ -30,10 +30,11 @@ class Floor:
     """The noise that a model's residuals are judged against.
 
     `rms`: plain noise floor of each output, in its unit (NaN: not measured). `ar`, `sd`: autoregression and innovation
-    sd of each output (sd 0: not measured). `tau`: relative sd of friction from run to run. `repeated`: whether repeats
-    say so; without them `sd` is what a model leaves, of which `known` is due to the sensors. `shares`: share of the
-    whitened samples of each output that count as independent; decisions weigh them by it. Fits count all samples, and
-    believe in the own unknowns of each experiment as much more firmly."""
+    sd of each output (sd 0: not measured). `tau`: relative sd of friction from run to run, which repeats told by so
+    many independent `differences`. `repeated`: whether there are repeats; without them `sd` is what a model leaves, of
+    which `known` is due to the sensors. `shares`: share of the whitened samples of each output that count as
+    independent; decisions weigh them by it. Fits count all samples, and believe in the own unknowns of each experiment
+    as much more firmly."""
 
     rms: np.ndarray
     ar: list[list[float]]
@@ -42,6 +43,15 @@ class Floor:
     repeated: bool
     known: tuple[float, ...] | None = None
     shares: tuple[float, ...] | None = None
+    differences: int = 0
+
+    @property
+    def tau_unseen(self) -> float:
+        """The same of a run that no fit saw: one pair of repeats that differ little may be chance."""
+        if not self.differences:
+            return self.tau
+        told = self.differences * self.tau**2
+        return float(np.sqrt((told + RUN_TO_RUN_UNKNOWN**2) / (self.differences + 1)))
 
     @property
     def levels(self) -> np.ndarray:

@@ -75,6 +75,7 @@ class _Search:
     def of(cls, case: Case, fitted: Fitted, floor: Floor, i: int) -> _Search:
         """Of experiment i, under the noise of the fit."""
         under = replace(floor, sd=fitted.levels.tolist())
+        case = replace(case, scatter=tuple((group, max(sd, floor.tau_unseen)) for group, sd in case.scatter))
         problem = pose(case.training_on([i]), under, fitted.system, added=fitted.added)
         moving = ~np.array(fitted.at_bound, dtype=bool)
         num = int(moving.sum())
