@@ -10,7 +10,7 @@ from tendonlab.checking.moving import (
     STRIDE,
     largest_around,
     median_around,
-    median_of_seven,
+    running_median,
     weighed_around,
     whole_around,
 )
@@ -20,11 +20,11 @@ RECORD = np.random.default_rng(4).normal(size=507)
 
 def test_seven_values_in_any_order_have_one_median() -> None:
     orders = np.array(list(permutations(range(7))), dtype=float)
-    assert (median_of_seven(orders.ravel())[3::7] == 3.0).all()
+    assert (running_median(orders.ravel())[3::7] == 3.0).all()
 
 
 def test_windows_agree_with_those_of_scipy() -> None:
-    np.testing.assert_array_equal(median_of_seven(RECORD), ndimage.median_filter(RECORD, 7, mode="nearest"))
+    np.testing.assert_array_equal(running_median(RECORD), ndimage.median_filter(RECORD, 7, mode="nearest"))
     np.testing.assert_array_equal(largest_around(RECORD, 7), ndimage.maximum_filter1d(RECORD, 7, mode="nearest"))
     weight = np.array([0.5, -1.0, 0.25, 2.0, 1.0])
     np.testing.assert_allclose(
@@ -51,3 +51,7 @@ def test_medians_of_a_record_shorter_than_a_window_are_of_the_record(num: int) -
     found = median_around(RECORD[:num], 51)
     assert found.shape == (num,)
     assert RECORD[:num].min() <= found.min() <= found.max() <= RECORD[:num].max()
+
+
+def test_an_empty_record_has_no_sums() -> None:
+    assert weighed_around(RECORD[:0], np.ones(3)).shape == (0,)

@@ -101,7 +101,7 @@ def test_stops_that_noise_decides_are_told() -> None:
     levels = Levels(nominal=9.0, tuned=1.0, refitted=2.0, explained=None, left=2.0, repeated=True)
     assert notes.stops(levels) == []
     (told,) = notes.stops(replace(levels, noise=ByNoise(left=4.0)))
-    assert told.startswith("Noise of the logs alone leads a perfect simulator 2 noise floors (rms) from the held-out")
+    assert told.startswith("Noise of the logs alone leads a perfect simulator about 2 noise floors (rms) from the")
     assert levels.far_room == pytest.approx(-0.2)
     assert replace(levels, noise=ByNoise(more=1.8)).far_room == pytest.approx(1.24)
 

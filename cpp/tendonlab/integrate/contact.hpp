@@ -23,8 +23,8 @@ class Contact : public Sticking<System, T> {
     return prescribed[m] || (weightless[m] && plain(breakaway(m, 1.0, y, frame, in).level) <= 0.0);
   }
 
-  /// Does mode m keep its direction at rest, because inputs drive what slides? No velocity that a step does not resolve
-  /// may turn it then.
+  /// Does mode m keep its direction at rest, because inputs drive what slides? No unresolved velocity may
+  /// turn it then.
   bool is_prescribed(int m) const { return m < directions && prescribed[m]; }
 
   template <class Inputs>

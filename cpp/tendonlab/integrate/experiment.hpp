@@ -79,6 +79,8 @@ struct Settings {
   long max_attempts = 20'000'000;
   PortRows ports;               ///< what to record of each port
   std::uint32_t outputs = ~0u;  ///< a bit per output that is recorded; the others stay 0
+  /// A velocity below a tenth of what a step may err by at rest is nothing but the stepper's error.
+  double unresolved_velocity() const { return 0.1 * tolerance * velocity_scale; }
 };
 
 struct Trajectory {

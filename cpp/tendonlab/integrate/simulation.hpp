@@ -253,8 +253,8 @@ class Simulation {
       contact.take_over(plain_frame.mode, y, frame, drive);
   }
   double margin(int m, const PlainY& at, double toward) const {
-    const double unresolved = plain_contact.is_prescribed(m) ? 0.1 * settings.tolerance * settings.velocity_scale : 0.0;
-    if (m != saturation) return plain_contact.margin(m, at, toward, plain_frame, drive) + unresolved;
+    const double late = plain_contact.is_prescribed(m) ? settings.unresolved_velocity() : 0.0;
+    if (m != saturation) return plain_contact.margin(m, at, toward, plain_frame, drive) + late;
     const double u = drive.unlimited(at.at.position, at.at.velocity, at.at.time), limit = drive.from.loop.limit;
     return drive.side == 0.0 ? limit - std::fabs(u) : drive.side * u - limit;
   }

@@ -5,19 +5,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+WINDOW = 7  # samples of the running median
 STRIDE = 8  # samples from one median of many to the next
 # Pairs that are put in order one after the other, by which seven values are sorted.
 FIRST = ((0, 6), (2, 3), (4, 5), (0, 2), (1, 4), (3, 6), (0, 1), (2, 5))
 SORTED = (*FIRST, (3, 4), (1, 2), (4, 6), (2, 3), (4, 5), (1, 2), (3, 4), (5, 6))
 
 
-def median_of_seven(values: np.ndarray) -> np.ndarray:
+def running_median(values: np.ndarray) -> np.ndarray:
     """The median of each sample, shape (n,), and three neighbours on either side; beyond an end its sample repeats."""
-    padded = np.pad(values, 3, mode="edge")
-    rows = [padded[k : k + len(values)] for k in range(7)]
+    padded = np.pad(values, WINDOW // 2, mode="edge")
+    rows = [padded[k : k + len(values)] for k in range(WINDOW)]
     for low, high in SORTED:
         rows[low], rows[high] = np.minimum(rows[low], rows[high]), np.maximum(rows[low], rows[high])
-    return rows[3]
+    return rows[WINDOW // 2]
 
 
 def median_around(values: np.ndarray, width: int) -> np.ndarray:
@@ -49,4 +50,6 @@ def weighed_around(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """The sum of samples around each one, shape (n,), times an odd number of weights; beyond an end its sample
     repeats."""
     half = len(weight) // 2
+    if not len(values):
+        return values
     return np.asarray(np.correlate(np.pad(values, half, mode="edge"), weight, mode="valid"))

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from tendonlab.checking.kicks import moves_the_rig
-from tendonlab.checking.moving import largest_around, median_around, median_of_seven
+from tendonlab.checking.moving import WINDOW, largest_around, median_around, running_median
 from tendonlab.data import Dataset, Experiment
 from tendonlab.simulation.reading import smallest_change
 
-FEWEST_SAMPLES = 21  # of a record, in which up to three outliers in a row are seen
+FEWEST_SAMPLES = 3 * WINDOW  # of a record whose outliers are looked for, up to three in a row
 AROUND = 51  # samples over which the noise of a record is looked at
 DEVIATIONS = 8.0  # robust standard deviations from the running median that make an outlier
 SPIKE = 25.0  # the same, of an input: what the controller did is no error
@@ -113,13 +113,13 @@ def _far_from_median(values: np.ndarray, deviations: float) -> np.ndarray:
     if len(kept) < FEWEST_SAMPLES:
         return found
     y = values[kept]
-    middle = median_of_seven(y)
+    middle = running_median(y)
     away = np.abs(y - middle)
     noise = 1.4826 * np.fmax(np.median(away), median_around(away, AROUND))
     # A sample of a motion faster than its noise is the median itself, and says nothing of the noise.
     noise = np.fmax(noise, 1.4826 * float(np.median(np.abs(np.diff(y, 4)))) / FOURTH)
     bends = np.abs(np.diff(middle, 2, prepend=middle[0], append=middle[-1]))
-    allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * largest_around(bends, 7)
+    allowed = deviations * np.fmax(noise, smallest_change(y)) + BEND * largest_around(bends, WINDOW)
     found[kept] = away > allowed
     return found if found.mean() <= MOST else np.zeros_like(found)
 

@@ -93,7 +93,7 @@ def _facts(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
         facts.append(
             (
                 share,
-                "of the excess error explained, as mean square over the floor",
+                "of the excess error explained, as mean square beyond noise",
                 "“effect identified” needs 75 % (60 % without repeats, or with training runs at the floor; up to 85 % "
                 "where more than four times the floor is left), an error at the floor, or parameters that only the "
                 "effect brings near their stated values",

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from tendonlab.diagnosis.answer import heldout
 from tendonlab.diagnosis.answer.heldout import Replayed
 from tendonlab.diagnosis.answer.verdict import NO_GAP
@@ -38,53 +36,66 @@ VISIBLY = 1.05  # ratio of held-out errors that a reader sees: right effects imp
 SURE = 2.0  # standard errors of its gain on held-out experiments that confirm it as well
 MAINLY = 0.25  # share of its gain that beliefs must make up, to confirm an effect without held-out experiments
 
+WORSE = "adding it predicts held-out experiments worse, or hardly better"
+CHANCE = f"adding it removes less than {100 * CONFIRMED:.0f} % of the held-out excess error, which may be chance"
+LITTLE = (
+    "adding it removes {:.0f} % of what the other effects leave above the floor of held-out experiments, but {:.0f} % "
+    "are needed"
+)
+INVISIBLE = (
+    "held-out experiments are near the noise floor without it, and adding it improves the error of no output by "
+    f"{100 * (VISIBLY - 1.0):.0f} %"
+)
+UNTOUCHED = "the untouched simulator predicts held-out experiments as well, and to the floor"
+
 
 def confirmed(search: Search, shop: Workshop) -> Search:
     """The search without the last effects that held-out experiments refute."""
-    while search.selected and _is_refuted(search):
-        search = search.without_last(*renewed(search.fitter, search.path[-2], shop.pool))
+    while search.selected and (why := _why_refuted(search)):
+        search = search.without_last(*renewed(search.fitter, search.path[-2], shop.pool), why)
     return search
 
 
-def _is_refuted(search: Search) -> bool:
-    """Whether held-out experiments are predicted worse with the last effect, or hardly better though the training
-    experiments predict much; without repeats where it removes little of what the model without it leaves, and may do
-    even that by chance, or where an effect beside others leaves much of what they leave. At the
-    floor, whether it changes nothing, or the untouched simulator is as good."""
+def _why_refuted(search: Search) -> str:
+    """Why held-out experiments refute the last effect, if they do: they are predicted worse with it, or hardly better
+    though the training experiments predict much; without repeats where it removes little of what the model without it
+    leaves, and may do even that by chance, or where an effect beside others leaves much of what they leave. At the
+    floor, where it changes nothing, or the untouched simulator is as good."""
     case, fitter, pair = search.fitter.case, search.fitter, search.path[-2:]
     gained, is_first = _gained(search), len(search.selected) == 1
     # What beliefs tell needs no experiment.
     is_believed = restores_belief(case, *pair) and relief(*pair) > MAINLY * gained
     if not case.test or (is_first and is_believed):
-        return False
+        return ""
     models = [heldout.models(case, m, case.test) for m in (pair if is_first else (search.tuned, *pair))]
     try:
         replays, judged, _ = heldout.replay_all(case, models, case.test)
     except NumericalError:  # there is none that both models simulate
-        return False
+        return ""
     tuned, before, after = replays[0], replays[-2], replays[-1]
     if not is_believed and pair[0].mean_square < NEAR_FLOOR and _changes_nothing(before, after, fitter.floor):
-        return True
+        return INVISIBLE
     floor = fitter.floor.reached_by(heldout.rms(after))
     if _is_as_good_untouched(case, after, floor, judged):
-        return True
-    share = heldout.explained(before, after, floor)
-    if not is_first and (share or 0.0) < _least_share(tuned, after, floor, gained):
-        return True
+        return UNTOUCHED
+    share = heldout.explained(before, after, floor) or 0.0
+    least = 0.0 if is_first else _least_share(tuned, after, floor, gained)
+    if share < least:
+        return LITTLE.format(100 * share, 100 * least)
     if is_believed:
-        return False
+        return ""
     gain = heldout.predictive_gain(case, fitter.whitening, fitter.floor, before, after, judged)
     if fitter.floor.repeated:
         predicted = CARRIED * gained * len(judged) / len(case.train)
-        needed = 0.0 if (share or 0.0) > MOSTLY else max(0.0, min(SURE * gain["se"], predicted))
-        return gain["mean"] < needed
-    return (share or 0.0) < CONFIRMED and gain["mean"] < SURE * gain["se"]
+        needed = 0.0 if share > MOSTLY else max(0.0, min(SURE * gain["se"], predicted))
+        return WORSE if gain["mean"] < needed else ""
+    return CHANCE if share < CONFIRMED and gain["mean"] < SURE * gain["se"] else ""
 
 
 def _changes_nothing(before: Replayed, after: Replayed, floor: Floor) -> bool:
     """Whether no output is predicted visibly better, at the floor: many samples may tell a fifth of a sampling step."""
-    better = heldout.rms(before) / heldout.rms(after)
-    return heldout.level(before, floor) < NEAR_FLOOR and float(np.nanmax(better)) < VISIBLY
+    is_better = heldout.rms(before) >= VISIBLY * heldout.rms(after)  # NaN, where nothing was measured, is not
+    return heldout.level(before, floor) < NEAR_FLOOR and not is_better.any()
 
 
 def _is_as_good_untouched(case: Case, after: Replayed, floor: Floor, judged: Sequence[int]) -> bool:

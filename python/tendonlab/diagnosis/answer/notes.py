@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tendonlab.diagnosis.answer import where
-from tendonlab.diagnosis.answer.confirm import BESIDE_UNKNOWN, CONFIRMED, FURTHER, TELLING
 from tendonlab.diagnosis.answer.heldout import Replayed, gap, row_mean_squares
 from tendonlab.diagnosis.answer.judged import Judged
 from tendonlab.diagnosis.answer.verdict import STRAINED, STRAINED_BESIDE, Levels
@@ -18,7 +17,7 @@ from tendonlab.diagnosis.discrepancy import FAR_SCATTERED, FAR_TRAINED, RINGS
 from tendonlab.diagnosis.drift import Drift
 from tendonlab.diagnosis.search.delays import value_and_interval
 from tendonlab.diagnosis.search.select import Search
-from tendonlab.diagnosis.search.trial import HIDDEN, is_nothing
+from tendonlab.diagnosis.search.trial import is_nothing
 from tendonlab.diagnosis.search.workshop import NOTHING
 from tendonlab.fitting.case import Case
 from tendonlab.fitting.fitted import Fitted
@@ -146,24 +145,10 @@ def _on_wide_intervals(search: Search) -> list[str]:
 
 
 def _on_the_refuted(search: Search) -> list[str]:
-    """Effects that held-out experiments refute: first one that stood alone, then those beside others."""
-    num_alone = 0 if search.selected else 1
-    alone, beside = search.refuted[:num_alone], search.refuted[num_alone:]
-    rest = "of what the other effects leave above the floor of held-out experiments"
-    if search.fitter.floor.repeated:
-        against = "predicts held-out experiments worse, or hardly better"
-        little = f"{against}, or removes less than {100 * BESIDE_UNKNOWN:.0f} % {rest}, and something unknown remains"
-    else:
-        against = f"removes less than {100 * CONFIRMED:.0f} % of the held-out excess error, which may be chance"
-        little = (
-            f"removes less than {100 * FURTHER:.0f} % {rest} ({100 * TELLING:.0f} % where left-out training "
-            f"experiments gain {HIDDEN:.0f} nats, {100 * BESIDE_UNKNOWN:.0f} % where something unknown remains)"
-        )
+    """Effects that held-out experiments refute."""
     return [
-        f"Not established: {', '.join(names)}. The training experiments speak for {them}, but adding {them} {why}."
-        for names, why in ((alone, against), (beside, little))
-        for them in ("it" if len(names) == 1 else "each",)
-        if names
+        f"Not established: {name}. The training experiments speak for it, but {why}."
+        for name, why in search.refuted.items()
     ]
 
 
@@ -281,9 +266,9 @@ def stops(levels: Levels) -> list[str]:
     if floors < TOLD:
         return []
     return [
-        f"Noise of the logs alone leads a perfect simulator {floors:.2g} noise floors (rms) from the held-out "
-        "experiments: where friction holds a part, noise decides where that part stops. No model can be expected to "
-        "come nearer, and the verdict allows for such noise."
+        f"Noise of the logs alone leads a perfect simulator about {floors:.2g} noise floors (rms) from the held-out "
+        "experiments, mostly where friction holds a part, and noise decides where that part stops. The verdict allows "
+        "for such noise."
     ]
 
 

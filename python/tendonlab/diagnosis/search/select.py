@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tendonlab.diagnosis.floor import renewed
@@ -32,13 +32,13 @@ class Search:
     """The outcome of a search. `tuned`: the refitted simulator without any added effect. `steps`: the model after each
     effect that was added. `rounds`: the contest for the place of each effect, then the one that no further effect won.
     `fitter`: the last one, under whose noise floor the final model was judged. `refuted`: effects that held-out
-    experiments refuted."""
+    experiments refuted, and why."""
 
     fitter: Fitter
     tuned: Fitted
     steps: tuple[Fitted, ...]
     rounds: tuple[Round, ...]
-    refuted: tuple[str, ...] = ()
+    refuted: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def final(self) -> Fitted:
@@ -50,12 +50,12 @@ class Search:
         """Effects established, in the order in which they were added."""
         return self.final.added
 
-    def without_last(self, fitter: Fitter, model: Fitted) -> Search:
+    def without_last(self, fitter: Fitter, model: Fitted, why: str) -> Search:
         """The search as if the last effect had not been established, under the `fitter` for the `model` before."""
         last, refuted = len(self.steps) - 1, self.selected[-1]
         tuned, steps = (self.tuned, (*self.steps[: last - 1], model)) if last else (model, ())
         rounds = (*(contest.without(refuted) for contest in self.rounds[:last]), self.rounds[last].refuted())
-        return Search(fitter, tuned, steps, rounds, (refuted, *self.refuted))
+        return Search(fitter, tuned, steps, rounds, {refuted: why, **self.refuted})
 
     @property
     def path(self) -> tuple[Fitted, ...]:
